@@ -19,7 +19,7 @@ packages=(
 )
 # And those that the tests need besides.
 test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py
-  python3-h5py python3-zarr teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
+  python3-h5py python3-zarr python3-netcdf4 teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
 
 # Prints what ParaView's development files need besides and do not demand: from Debian 14 on, ParaView uses
 # the VTK that is packaged for itself; and the panel needs the Qt that ParaView has. Nothing where the package

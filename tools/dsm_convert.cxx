@@ -115,6 +115,14 @@ Options Parse(CLI::App& app, int argc, char** argv)
     ->check(CLI::Range(1, MostThreads, "N"));
   app.add_flag("--quiet", options.IsQuiet, "do not print progress");
 
+  AddThree(app, "--spacing", options.Open.Spacing.data(),
+    "distance between samples along x, y and z, separated by commas (default: as the file says)");
+  app
+    .add_option("--origin", options.Open.Origin,
+      "position of the first sample along x, y and z, separated by commas (default: as the file "
+      "says)")
+    ->delimiter(',');
+
   CLI::App& raw = *app.add_option_group("Options for .raw files");
   AddThree(
     raw, "--raw-size", &bare.Samples[0], "number of samples along x, y and z, separated by commas");
@@ -130,8 +138,6 @@ Options Parse(CLI::App& app, int argc, char** argv)
       "--raw-header", bare.HeaderBytes, "number of bytes before the first value (default: 0)")
     ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max(), "BYTES"));
   raw.add_flag("--raw-big-endian", bare.BigEndian, "values are big-endian");
-  AddThree(raw, "--spacing", bare.Spacing,
-    "distance between samples along x, y and z, separated by commas (default: 1,1,1)");
 
   app.parse(argc, argv);
   convert.MemoryBytes = mebibytes > 0 ? mebibytes << 20 : convert.MemoryBytes;

@@ -41,8 +41,17 @@ double GetExpected(
   const bricks::Index3 at = sample * entry.value("stride", std::int64_t(1));
   const std::int64_t channel = array["channel"];
   step = array["still"] ? 0 : step;
-  return static_cast<double>(
+  const auto number = static_cast<double>(
     (3 * at.x + 5 * at.y + 7 * at.z + component + 11 * channel + 13 * step) % 101);
+  if (!entry.contains("packing"))
+  {
+    return number;
+  }
+  const Json& packing = entry["packing"];
+  const std::vector<double> missing = packing["missing"];
+  return std::count(missing.begin(), missing.end(), number) > 0
+    ? std::nan("")
+    : packing["scale"].get<double>() * number + packing["offset"].get<double>();
 }
 
 int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& entry,
@@ -70,8 +79,11 @@ int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& e
               T value;
               std::memcpy(&value, bytes.data() + at, sizeof(T));
               at += sizeof(T);
-              wrong += static_cast<double>(value) !=
+              const double expected =
                 GetExpected(entry, entry["arrays"][number], step, { x, y, z }, component);
+              const bool areMissing =
+                std::isnan(expected) && std::isnan(static_cast<double>(value));
+              wrong += !areMissing && static_cast<double>(value) != expected;
             }
           }
         }
@@ -86,13 +98,16 @@ void ExpectGeometry(const vol::FileGeometry& geometry, const Json& entry)
   {
     EXPECT_EQ(geometry.Points[axis], entry["size"][axis].get<std::int64_t>());
     EXPECT_EQ(geometry.First[axis], entry.value("first", Json({ 0, 0, 0 }))[axis]);
-    EXPECT_EQ(geometry.Origin[axis], entry.value("origin", Json({ 0.0, 0.0, 0.0 }))[axis]);
-    EXPECT_EQ(geometry.Spacing[axis], entry.value("spacing", Json({ 1.0, 1.0, 1.0 }))[axis]);
+    EXPECT_DOUBLE_EQ(geometry.Origin[axis], entry.value("origin", Json({ 0.0, 0.0, 0.0 }))[axis]);
+    EXPECT_DOUBLE_EQ(geometry.Spacing[axis], entry.value("spacing", Json({ 1.0, 1.0, 1.0 }))[axis]);
+    const std::vector<double> none;
+    EXPECT_EQ(geometry.Coordinates[static_cast<std::size_t>(axis)],
+      entry.contains("coordinates") ? entry["coordinates"][axis].get<std::vector<double>>() : none);
   }
   for (int element = 0; element < 9; ++element)
   {
     const double none = element % 4 == 0 ? 1.0 : 0.0;
-    EXPECT_EQ(geometry.Direction[element],
+    EXPECT_DOUBLE_EQ(geometry.Direction[element],
       entry.contains("direction") ? entry["direction"][element].get<double>() : none);
   }
 }
@@ -109,6 +124,11 @@ TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
       const auto file = Open(entry);
       ExpectGeometry(file->GetGeometry(), entry);
       EXPECT_EQ(file->GetSteps(), entry["steps"]);
+      for (int step = 0; entry.contains("times") && step < file->GetSteps(); ++step)
+      {
+        EXPECT_EQ(file->GetTime(step), entry["times"][step]);
+      }
+      EXPECT_EQ(file->GetWarnings().size(), entry.value("warnings", std::size_t(0)));
       EXPECT_EQ(file->GetLevels(), entry.value("levels", 1));
       ASSERT_EQ(file->GetArrays().size(), entry["arrays"].size());
       // One chunk at a time, so that all are evicted, and one that has everything.

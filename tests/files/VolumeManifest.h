@@ -63,7 +63,7 @@ inline vol::OpenOptions GetOptions(const Json& entry)
     options.Bare.HeaderBytes = raw["header"];
     for (int axis = 0; axis < 3; ++axis)
     {
-      options.Bare.Spacing[axis] = raw["spacing"][axis];
+      options.Spacing[static_cast<std::size_t>(axis)] = raw["spacing"][axis];
     }
   }
   return options;

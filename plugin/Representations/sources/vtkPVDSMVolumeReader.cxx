@@ -53,6 +53,31 @@ void vtkPVDSMVolumeReader::SetDatasetName(const char* name)
   this->Superclass::SetDatasetName(name ? name : "");
 }
 
+void vtkPVDSMVolumeReader::SetSpacing(double x, double y, double z)
+{
+  this->Superclass::SetSpacing(x, y, z);
+}
+
+void vtkPVDSMVolumeReader::SetSpacing(const double spacing[3])
+{
+  this->Superclass::SetSpacing(spacing);
+}
+
+void vtkPVDSMVolumeReader::SetOrigin(double x, double y, double z)
+{
+  this->Superclass::SetOrigin(x, y, z);
+}
+
+void vtkPVDSMVolumeReader::SetOrigin(const double origin[3])
+{
+  this->Superclass::SetOrigin(origin);
+}
+
+void vtkPVDSMVolumeReader::SetOwnOrigin(bool isOwn)
+{
+  this->Superclass::SetOwnOrigin(isOwn);
+}
+
 bool vtkPVDSMVolumeReader::GetRawFile()
 {
   return this->Superclass::GetRawFile();

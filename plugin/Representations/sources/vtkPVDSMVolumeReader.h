@@ -37,6 +37,11 @@ public:
   void SetRawComponents(int components) override;
   void SetRawBigEndian(bool isBigEndian) override;
   void SetRawHeaderBytes(vtkIdType bytes) override;
+  void SetSpacing(double x, double y, double z) override;
+  void SetSpacing(const double spacing[3]) override;
+  void SetOrigin(double x, double y, double z) override;
+  void SetOrigin(const double origin[3]) override;
+  void SetOwnOrigin(bool isOwn) override;
   void SetRawSpacing(double x, double y, double z) override;
   void SetRawSpacing(const double spacing[3]) override;
   void SetValuesInMemory(bool areInMemory) override;

@@ -182,7 +182,8 @@ group.attrs["omero"] = {"channels": [{"label": "red"}, {"label": "green"}]}
 channels = [("red", "uint16", 1, 0), ("green", "uint16", 1, 1)]
 note("ome.zarr", channels, steps=3, spacing=[1.0, 2.0, 4.0], levels=2)
 note(
-    "ome.zarr", channels, steps=3, spacing=[2.0, 4.0, 8.0], levels=2, level=1, size=(11, 7, 5), stride=2
+    "ome.zarr", channels, steps=3, spacing=[2.0, 4.0, 8.0], levels=2, level=1, size=(11, 7, 5), stride=2,
+    origin=[0.5, 1.0, 2.0],
 )
 
 

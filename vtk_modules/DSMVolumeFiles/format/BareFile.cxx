@@ -193,7 +193,7 @@ ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes)
   return { samples, { std::max<std::int64_t>(1, samples.x), rows, planes } };
 }
 
-std::shared_ptr<const VolumeFile> OpenBareFile(
+std::shared_ptr<VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry)
 {
   return std::make_shared<BareFile>(path, values, geometry);

@@ -28,7 +28,7 @@ struct BareValues
 
 /// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at
 /// most 1 MiB. Throws dsm::Error when the file cannot be opened or is too short.
-std::shared_ptr<const VolumeFile> OpenBareFile(
+std::shared_ptr<VolumeFile> OpenBareFile(
   const std::string& path, const BareValues& values, const FileGeometry& geometry);
 
 /// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.

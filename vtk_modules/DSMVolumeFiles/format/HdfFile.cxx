@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
@@ -12,11 +13,13 @@
 #include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfImage.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -36,6 +39,7 @@ class HdfFile final : public StoredFile
 public:
   HdfFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
+    , IsPlaced(!options.HasSpacing())
     , GoesOn(options.GoesOn)
     , Bytes(std::make_shared<PositionedFile>(path))
     , File(Open(path))
@@ -56,8 +60,12 @@ public:
     }
     this->GoesOn = nullptr; // whoever opens the file may be gone later
     // Results kept for one level must not be used for another.
-    this->Stamp =
-      this->Origins.GetStamp(this->Bytes->GetStamp() + static_cast<std::uint64_t>(level));
+    std::uint64_t stamp = this->Bytes->GetStamp() + static_cast<std::uint64_t>(level);
+    for (const Storage& storage : this->Storages)
+    {
+      stamp += storage.Packed.GetStamp();
+    }
+    this->Stamp = this->Origins.GetStamp(stamp);
   }
   ~HdfFile() override
   {
@@ -66,8 +74,7 @@ public:
     this->Close();
   }
 
-  static std::shared_ptr<const VolumeFile> Create(
-    const std::string& path, const OpenOptions& options)
+  static std::shared_ptr<VolumeFile> Create(const std::string& path, const OpenOptions& options)
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
@@ -89,8 +96,8 @@ public:
   {
     if (this->Kept[array].ReadByLibrary)
     {
-      this->ReadByLibrary(array, step, chunk, out);
-      this->ReplaceMissing(array, out, this->Arrays[array].Grid.GetBox(chunk).GetCount());
+      this->Unpack(array, this->Arrays[array].Grid.GetBox(chunk).GetCount(), out,
+        [&](std::byte* to) { this->ReadByLibrary(array, step, chunk, to); });
     }
     else
     {
@@ -100,9 +107,10 @@ public:
 
   Index ReadIndex(std::size_t array, int) const override
   {
-    if (this->Arrays[array].Valid.Exclude(this->Arrays[array].Type))
+    if (this->Storages[array].Packed.ArePacked() ||
+      this->Arrays[array].Valid.Exclude(this->Arrays[array].Type))
     {
-      return {}; // it was made before values were declared missing
+      return {}; // it was made before the attributes were added
     }
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
@@ -136,6 +144,7 @@ protected:
       return std::nullopt; // nobody else knows
     }
     const ChunkGrid grid = this->GetStoredGrid(array);
+    const HdfAxes& axes = dataset.Shape;
     const std::size_t frame = dataset.GetFrame(step);
     if (!dataset.Chunks)
     {
@@ -146,31 +155,38 @@ protected:
       const bricks::Box box = grid.GetBox(chunk);
       const auto before =
         static_cast<std::uint64_t>((box.Min.z * grid.Samples.y + box.Min.y) * grid.Samples.x);
-      const std::size_t bytes = this->Arrays[array].GetSampleBytes();
+      const std::size_t bytes = this->GetStoredBytes(array);
       const auto frameSamples =
         static_cast<std::uint64_t>(grid.Samples.x * grid.Samples.y * grid.Samples.z);
       return Place{ this->Bytes, dataset.First + (frame * frameSamples + before) * bytes,
         static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
     }
-    const std::size_t slices = this->Storages[array].Slices;
-    const HdfChunk* const stored =
-      dataset.Chunks->Find(static_cast<std::uint64_t>(grid.GetCount()) * (frame / slices) +
-        static_cast<std::uint64_t>(grid.GetNumber(chunk)));
+    const std::size_t times = dataset.ChunkTimes;
+    const bricks::Index3 counts = grid.GetCounts();
+    std::uint64_t number = frame / times;
+    for (const int axis : axes.Order)
+    {
+      number =
+        number * static_cast<std::uint64_t>(counts[axis]) + static_cast<std::uint64_t>(chunk[axis]);
+    }
+    const HdfChunk* const stored = dataset.Chunks->Find(number);
     if (!stored)
     {
       return std::nullopt;
     }
     return Place{ this->Bytes, stored->First, stored->Bytes, stored->SkippedFilters,
-      frame % slices };
+      frame % times };
   }
 
 private:
   struct Dataset
   {
     HdfHandle Id;
+    bricks::ScalarType Type = bricks::ScalarType::UInt8; ///< as which the library reads it
     bool ReadByLibrary = false;
     haddr_t First = HADDR_UNDEF;         ///< of contiguous values
     std::optional<HdfChunkTable> Chunks; ///< chunks of all times; none where values are contiguous
+    std::size_t ChunkTimes = 1;          ///< in a chunk
     HdfAxes Shape;
     std::vector<int>
       Frames; ///< position of each step along the time axis; empty: each step has its own chunks
@@ -291,8 +307,9 @@ private:
       HdfHandle dataset = OpenHdfDataset(group.Get(), link);
       HdfAxes found;
       std::string tooLong;
-      const HdfAxes::Time time = this->Times.empty() ? HdfAxes::Time::None : HdfAxes::Time::First;
-      const bool isVolume = dataset.IsOpen() && found.Find(dataset.Get(), time, &tooLong);
+      const HdfAxes::Kind kind = this->Times.empty() ? HdfAxes::Kind::Still : HdfAxes::Kind::InTime;
+      const bool isVolume =
+        dataset.IsOpen() && found.Find(GetHdfShape(dataset.Get()), kind, {}, &tooLong);
       if (!tooLong.empty())
       {
         this->RefuseLength(link, tooLong);
@@ -347,51 +364,113 @@ private:
     return frames;
   }
 
+  /// A dataset that holds a volume, and what is known of its axes.
+  struct Volume
+  {
+    HdfAxes Axes;
+    AxisNotes Notes;
+    std::vector<std::string> Warnings;
+  };
+
   void FindDatasets(const std::string& wanted)
   {
     const std::vector<std::string> names =
       wanted.empty() ? FindHdfDatasets(this->File.Get()) : std::vector<std::string>{ wanted };
-    this->Missing = "numeric dataset with three axes.";
-    std::map<std::string, HdfAxes> volumes;
+    std::map<std::string, Volume> volumes;
+    std::vector<std::string> others; // datasets of numbers that are no volumes
     for (const std::string& name : names)
     {
       const HdfHandle dataset = OpenHdfDataset(this->File.Get(), name);
-      HdfAxes axes;
-      std::string tooLong;
-      if (dataset.IsOpen() && axes.Find(dataset.Get(), HdfAxes::Time::Unknown, &tooLong) &&
-        FindHdfValues(dataset.Get()))
+      if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
       {
-        volumes[name] = axes;
+        continue;
       }
-      else if (!tooLong.empty() && (!wanted.empty() || names.size() == 1))
+      const std::vector<hsize_t> shape = GetHdfShape(dataset.Get());
+      Volume volume;
+      volume.Notes = ReadHdfNotes(this->File.Get(), dataset.Get(), volume.Warnings);
+      std::string tooLong;
+      if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, volume.Notes, &tooLong))
+      {
+        volumes.emplace(name, std::move(volume));
+      }
+      else if (!tooLong.empty() && names.size() == 1)
       {
         this->RefuseLength(name, tooLong);
       }
-      else if (!wanted.empty() && !dataset.IsOpen())
+      else
       {
-        this->Missing = "dataset '" + wanted +
-          "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
-      }
-      else if (!wanted.empty())
-      {
-        this->Missing = "volume in its dataset '" + wanted +
-          "'. A volume has numbers along three axes (z, y, x). It may have a first axis of time "
-          "steps and a last axis of components.";
+        others.push_back(name + "' (" + DescribeHdfShape(shape) + ")");
       }
     }
+    this->DescribeMissing(wanted, others);
     VolumeShape largest;
-    for (const auto& [name, axes] : volumes)
+    for (const auto& [name, volume] : volumes)
     {
-      largest = axes.GetShape().IsLargerThan(largest) ? axes.GetShape() : largest;
+      const VolumeShape shape = volume.Axes.GetShape();
+      largest = shape.IsLargerThan(largest) ? shape : largest;
     }
     this->Geometry.Points = largest.Samples;
     this->Steps = static_cast<int>(std::max<std::int64_t>(1, largest.Times));
-    for (const auto& [name, axes] : volumes)
+    for (const auto& [name, volume] : volumes)
     {
-      if (axes.GetShape().BelongsTo(largest))
+      if (volume.Axes.GetShape().BelongsTo(largest))
       {
-        this->Add(OpenHdfDataset(this->File.Get(), name), name, false, axes, {});
+        this->LocateBy(name, volume);
+        this->Add(OpenHdfDataset(this->File.Get(), name), name, false, volume.Axes, {});
       }
+    }
+  }
+
+  /// What there must be, should no volume be found.
+  void DescribeMissing(const std::string& wanted, const std::vector<std::string>& others)
+  {
+    const std::string shapes = others.empty()
+      ? std::string()
+      : " A volume has numbers along three axes (z, y, x). It may have a first axis of time steps, "
+        "others of length 1, and a last axis of components. Datasets of numbers: '" +
+        others.front() +
+        (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : ".");
+    const bool isThere = wanted.empty() || OpenHdfDataset(this->File.Get(), wanted).IsOpen();
+    this->Missing = wanted.empty() ? "numeric dataset with three axes." + shapes
+      : isThere                    ? "volume in its dataset '" + wanted + "'." + shapes
+                                   : "dataset '" + wanted +
+        "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
+  }
+
+  /// By the first of the datasets, whose place is all datasets'.
+  void LocateBy(const std::string& name, const Volume& volume)
+  {
+    this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
+    if (volume.Notes.size() != volume.Axes.Rank)
+    {
+      return;
+    }
+    FileGeometry place;
+    place.Points = this->Geometry.Points;
+    std::array<const AxisNote*, 3> inSpace{};
+    for (std::size_t axis = 0; axis < inSpace.size(); ++axis)
+    {
+      inSpace[static_cast<std::size_t>(volume.Axes.Order[axis])] =
+        &volume.Notes[volume.Axes.Space + axis];
+    }
+    std::vector<std::string> warnings;
+    if (this->IsPlaced)
+    {
+      PlaceAxes(this->Path, inSpace, place, warnings);
+    }
+    if (this->Arrays.empty())
+    {
+      this->Geometry = place;
+      this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
+    }
+    else if (!IsSamePlace(place, this->Geometry))
+    {
+      this->Warnings.push_back("has arrays at different positions. Array " + Quote(name) +
+        " is shown at those of " + Quote(this->Arrays.front().Name) + ".");
+    }
+    if (volume.Axes.Time && this->Times.empty())
+    {
+      this->Times = FindTimes(volume.Notes[*volume.Axes.Time], this->Steps, this->Warnings);
     }
   }
 
@@ -415,19 +494,16 @@ private:
     }
     array.Type = values->Type;
     array.Grid.Samples = axes.Samples;
-    for (const char* const missing : MissingValueAttributes)
-    {
-      if (ReadHdfAttribute(id.Get(), missing, H5T_NATIVE_DOUBLE, &array.Valid.Fill, 1))
-      {
-        break;
-      }
-    }
+    Storage storage;
+    storage.Packed = this->FindPacking(id.Get(), values->Type, name);
     CheckSizes(this->Path, array);
     const bool isElsewhere = this->Origins.Add(this->Path, this->File.Get(), id.Get());
-    array.Grid = CutIntoRows(axes.Samples, array.GetSampleBytes());
-    Dataset dataset{ std::move(id), !values->IsPlain || isElsewhere, HADDR_UNDEF, std::nullopt,
-      axes, std::move(frames) };
-    Storage storage;
+    const bool isOrdered = axes.Order == FastestX;
+    const auto cut = isOrdered ? &CutIntoRows : &CutIntoBoxes;
+    array.Grid = cut(axes.Samples, array.GetSampleBytes());
+    storage.Order = axes.Order;
+    Dataset dataset{ std::move(id), values->Type, !values->IsPlain || isElsewhere, HADDR_UNDEF,
+      std::nullopt, 1, axes, std::move(frames) };
     storage.Fill = GetHdfFill(dataset.Id.Get(), array.Type, array.Components);
     const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
     std::vector<CodecStep> steps;
@@ -441,12 +517,14 @@ private:
         dataset.First = dataset.ReadByLibrary
           ? HADDR_UNDEF
           : FindHdfValuesPlace(dataset.Id.Get(), *this->Bytes, array, axes.Frames);
+        dataset.ReadByLibrary = dataset.ReadByLibrary || !isOrdered;
         storage.HasWholeChunks = false;
         break;
       case H5D_CHUNKED:
       {
         const std::vector<hsize_t> edges = GetHdfChunkEdges(dataset.Id.Get(), this->Path, name);
-        CutAsStored(edges, axes, array.Grid);
+        array.Grid.ChunkSamples =
+          axes.GetSpace(edges); // so that the library, too, unpacks each chunk once
         CheckSizes(this->Path, array);
         // Also of chunks that the library reads: it does not check how many bytes they have.
         const bool areFound = !isElsewhere &&
@@ -482,9 +560,19 @@ private:
     {
       CutPlainChunks(array, storage);
     }
+    array.Type = storage.Packed.GetType();
+    array.Valid = storage.Packed.GetValid();
     this->Arrays.push_back(std::move(array));
     this->Storages.push_back(std::move(storage));
     this->Kept.push_back(std::move(dataset));
+  }
+
+  PackedValues FindPacking(hid_t dataset, bricks::ScalarType stored, const std::string& name)
+  {
+    PackedValues packed(stored);
+    packed.TakeAttributes([&](const char* attribute) { return ReadHdfNumbers(dataset, attribute); },
+      ReadHdfText(dataset, "_Unsigned") == "true", name, this->Warnings);
+    return packed;
   }
 
   ChunkCodec CreateCodec(const std::string& name, std::vector<CodecStep> steps) const
@@ -497,14 +585,6 @@ private:
     {
       throw FileError({ this->Path, name, {} }, error);
     }
-  }
-
-  /// So that the library, too, unpacks each chunk once.
-  static void CutAsStored(const std::vector<hsize_t>& edges, const HdfAxes& axes, ChunkGrid& grid)
-  {
-    const std::size_t z = axes.GetBeforeSpace();
-    grid.ChunkSamples = { static_cast<std::int64_t>(edges[z + 2]),
-      static_cast<std::int64_t>(edges[z + 1]), static_cast<std::int64_t>(edges[z]) };
   }
 
   /// As one chunk is, but for small ones.
@@ -549,13 +629,15 @@ private:
     {
       return false;
     }
-    const std::size_t z = dataset.Shape.GetBeforeSpace();
+    const HdfAxes& axes = dataset.Shape;
     // A chunk may have several times.
-    const hsize_t times = z > 0 ? edges[0] : 1;
-    CheckSizes(this->Path, array, times);
-    storage.Slices = static_cast<std::size_t>(times);
+    const hsize_t slices = axes.CountSlices(edges);
+    CheckSizes(this->Path, array, slices);
+    storage.Slices = static_cast<std::size_t>(slices);
+    dataset.ChunkTimes = axes.Time ? static_cast<std::size_t>(edges[*axes.Time]) : 1;
     dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, array.Name, edges, this->GoesOn);
-    if (dataset.Shape.Components > 0 && edges[z + 3] != dataset.Shape.Components)
+    const bool areWhole = axes.Components == 0 || edges.back() == axes.Components;
+    if (!areWhole || dataset.ChunkTimes != slices)
     {
       dataset.Chunks.reset();
     }
@@ -578,10 +660,8 @@ private:
     const FileArray& array = this->Arrays[number];
     const hid_t dataset = this->Kept[number].Id.Get();
     const Dataset& kept = this->Kept[number];
-    const std::optional<std::size_t> frame =
-      kept.Shape.Frames > 0 ? std::optional<std::size_t>(kept.GetFrame(step)) : std::nullopt;
-    const bool isRead =
-      ReadHdfBox(dataset, array.Type, array.Components, frame, array.Grid.GetBox(chunk), out);
+    const bool isRead = ReadHdfBox(
+      dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
     this->Bytes->CheckUnchanged();
     this->Origins.CheckUnchanged();
     if (!isRead)
@@ -593,6 +673,7 @@ private:
     }
   }
 
+  bool IsPlaced;                ///< by what the file says
   std::function<bool()> GoesOn; ///< while the file is being opened
   std::shared_ptr<const PositionedFile> Bytes;
   HdfOrigins Origins;
@@ -605,7 +686,7 @@ private:
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenHdf(const std::string& path, const OpenOptions& options)
+std::shared_ptr<VolumeFile> OpenHdf(const std::string& path, const OpenOptions& options)
 {
   return HdfFile::Create(path, options);
 }

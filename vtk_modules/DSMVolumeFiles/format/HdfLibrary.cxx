@@ -161,34 +161,105 @@ bool IsHdfNumber(hid_t type)
       isWithin(sign, 1) && isWithin(exponent, exponentBits) && isWithin(fraction, fractionBits));
 }
 
-std::string ReadHdfText(hid_t object, const char* name)
+std::vector<double> ReadHdfNumbers(hid_t object, const char* name)
 {
+  std::vector<double> numbers;
   if (H5Aexists(object, name) <= 0)
   {
-    return {};
+    return numbers;
+  }
+  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
+  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
+  if (count > 0 && static_cast<std::uint64_t>(count) <= FileLimits::Axes)
+  {
+    numbers.resize(static_cast<std::size_t>(count));
+    if (!ReadHdfAttribute(object, name, H5T_NATIVE_DOUBLE, numbers.data(), count))
+    {
+      numbers.clear();
+    }
+  }
+  return numbers;
+}
+
+std::string ReadHdfText(hid_t object, const char* name)
+{
+  const std::vector<std::string> texts = ReadHdfTexts(object, name);
+  return texts.size() == 1 ? texts.front() : std::string();
+}
+
+std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
+{
+  std::vector<std::string> texts;
+  if (H5Aexists(object, name) <= 0)
+  {
+    return texts;
   }
   const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
   const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
   const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-  if (H5Tget_class(type.Get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.Get()) != 1)
+  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
+  const std::size_t bytes = H5Tget_size(type.Get());
+  if (H5Tget_class(type.Get()) != H5T_STRING || count < 1 ||
+    static_cast<std::uint64_t>(count) > FileLimits::Axes || bytes > FileLimits::NameBytes)
   {
-    return {};
+    return texts;
   }
+  const auto all = static_cast<std::size_t>(count);
   if (H5Tis_variable_str(type.Get()) > 0)
   {
-    char* text = nullptr;
-    const bool isRead = H5Aread(attribute.Get(), type.Get(), &text) >= 0 && text;
-    std::string copy = isRead ? text : "";
-    H5free_memory(text);
-    return copy;
+    std::vector<char*> read(all, nullptr);
+    const bool isRead = H5Aread(attribute.Get(), type.Get(), read.data()) >= 0;
+    for (char* const text : read)
+    {
+      texts.emplace_back(isRead && text ? text : "");
+      H5free_memory(text);
+    }
+    return texts;
   }
-  const std::size_t bytes = H5Tget_size(type.Get());
-  if (bytes > FileLimits::NameBytes)
+  std::vector<char> read(all * bytes + 1, '\0');
+  if (H5Aread(attribute.Get(), type.Get(), read.data()) >= 0)
   {
-    return {};
+    for (std::size_t index = 0; index < all; ++index)
+    {
+      const char* const text = read.data() + index * bytes;
+      texts.emplace_back(text, strnlen(text, bytes));
+    }
   }
-  std::string text(bytes + 1, '\0');
-  return H5Aread(attribute.Get(), type.Get(), text.data()) >= 0 ? text.c_str() : "";
+  return texts;
+}
+
+std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t axes)
+{
+  std::vector<std::string> paths;
+  const char* const name = "DIMENSION_LIST";
+  if (H5Aexists(dataset, name) <= 0)
+  {
+    return paths;
+  }
+  const HdfHandle attribute(H5Aopen(dataset, name, H5P_DEFAULT), &H5Aclose);
+  const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
+  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
+  const HdfHandle references(H5Tvlen_create(H5T_STD_REF_OBJ), &H5Tclose);
+  std::vector<hvl_t> lists(axes);
+  if (H5Sget_simple_extent_npoints(space.Get()) != static_cast<hssize_t>(axes) ||
+    H5Tequal(type.Get(), references.Get()) <= 0 ||
+    H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
+  {
+    return paths;
+  }
+  for (const hvl_t& list : lists)
+  {
+    const HdfHandle scale(list.len > 0 && list.p
+        ? H5Rdereference2(file, H5P_DEFAULT, H5R_OBJECT, list.p)
+        : H5I_INVALID_HID,
+      &H5Oclose);
+    paths.push_back(scale.IsOpen()
+        ? GetHdfText([&](char* to, std::size_t size) { return H5Iget_name(scale.Get(), to, size); })
+        : std::string());
+  }
+  H5Dvlen_reclaim(references.Get(), space.Get(), H5P_DEFAULT, lists.data());
+  return paths;
 }
 
 HdfSilence::HdfSilence()

@@ -148,8 +148,19 @@ bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize
     H5Aread(attribute.Get(), type, out) >= 0;
 }
 
+/// An attribute's numbers; none where there is no such attribute, or it has more than the axes of a dataset, or others than
+/// numbers. Under the lock.
+std::vector<double> ReadHdfNumbers(hid_t object, const char* name);
+
 /// An attribute's text; empty where there is no such attribute, or it is no text. Under the lock.
 std::string ReadHdfText(hid_t object, const char* name);
+/// An attribute's texts; none where there is no such attribute, or it has more than the axes of a dataset, or no texts. Under
+/// the lock.
+std::vector<std::string> ReadHdfTexts(hid_t object, const char* name);
+
+/// Paths of the dimension scales of a dataset of so many axes, the first one of each axis; empty of an axis that has none.
+/// None where the dataset has no list of scales. Under the lock.
+std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t axes);
 
 /// Suppresses the library's own error output; this code reports the errors.
 class HdfSilence

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfValues.h"
 
+#include "DSMVolumeFiles/base/ByteBuffer.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -79,23 +81,39 @@ std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int co
   return all;
 }
 
-bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, int components,
-  std::optional<std::size_t> frame, const bricks::Box& box, std::byte* out)
+bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, const HdfAxes& axes, std::size_t frame,
+  const bricks::Box& box, std::byte* out)
 {
   const bricks::Index3 size = box.GetSize();
-  const hsize_t first[5] = { frame.value_or(0), static_cast<hsize_t>(box.Min.z),
-    static_cast<hsize_t>(box.Min.y), static_cast<hsize_t>(box.Min.x), 0 };
-  const hsize_t count[5] = { 1, static_cast<hsize_t>(size.z), static_cast<hsize_t>(size.y),
-    static_cast<hsize_t>(size.x), static_cast<hsize_t>(components) };
+  const hsize_t components = std::max<hsize_t>(1, axes.Components);
+  std::vector<hsize_t> first(axes.Rank, 0);
+  std::vector<hsize_t> count(axes.Rank, 1);
+  for (std::size_t place = 0; place < axes.Order.size(); ++place)
+  {
+    first[axes.Space + place] = static_cast<hsize_t>(box.Min[axes.Order[place]]);
+    count[axes.Space + place] = static_cast<hsize_t>(size[axes.Order[place]]);
+  }
+  if (axes.Time)
+  {
+    first[*axes.Time] = frame;
+  }
+  count.back() = axes.Components > 0 ? components : count.back();
   const std::size_t sampleBytes = bricks::GetBytes(type) * static_cast<std::size_t>(components);
-  std::fill_n(out, static_cast<std::size_t>(box.GetCount()) * sampleBytes, std::byte(0));
+  const std::size_t bytes = static_cast<std::size_t>(box.GetCount()) * sampleBytes;
+  ByteBuffer ordered(axes.Order != FastestX ? bytes : 0);
+  std::byte* const to = ordered.empty() ? out : ordered.data();
+  std::fill_n(to, bytes, std::byte(0));
   const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
-  const int axes = H5Sget_simple_extent_ndims(all.Get());
-  const std::size_t skipped = frame ? 0 : 1;
-  const HdfHandle part(H5Screate_simple(axes, count + skipped, nullptr), &H5Sclose);
-  return H5Sselect_hyperslab(
-           all.Get(), H5S_SELECT_SET, first + skipped, nullptr, count + skipped, nullptr) >= 0 &&
-    H5Dread(dataset, GetHdfType(type), part.Get(), all.Get(), H5P_DEFAULT, out) >= 0;
+  const HdfHandle part(
+    H5Screate_simple(static_cast<int>(axes.Rank), count.data(), nullptr), &H5Sclose);
+  const bool isRead = H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first.data(), nullptr,
+                        count.data(), nullptr) >= 0 &&
+    H5Dread(dataset, GetHdfType(type), part.Get(), all.Get(), H5P_DEFAULT, to) >= 0;
+  if (!ordered.empty())
+  {
+    CopyOrdered(to, size, axes.Order, out, size, sampleBytes);
+  }
+  return isRead;
 }
 
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)

@@ -5,6 +5,7 @@
 #include "DSMBricks/base/Box.h"
 #include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
 #include <cstddef>
@@ -30,10 +31,9 @@ std::optional<HdfValues> FindHdfValues(hid_t dataset);
 /// Returns the value of a sample that was never written.
 std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components);
 
-/// Reads the samples of a box, dense and x fastest, by the library. `frame`: along a first axis of time, where there is one.
-/// Returns false, and `out` has zeros where nothing was read, when the library cannot.
-bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, int components,
-  std::optional<std::size_t> frame, const bricks::Box& box, std::byte* out);
+/// Reads the samples of a box, dense and x fastest, by the library. `frame`: along the axis of time. Returns false, and `out` has zeros where nothing was read, when the library cannot.
+bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, const HdfAxes& axes, std::size_t frame,
+  const bricks::Box& box, std::byte* out);
 
 /// Converts the filters of a dataset with these properties to codec steps. Returns false if one is unknown.
 bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps);

@@ -47,7 +47,7 @@ bool IsTrue(const HeaderText& header, const std::string& name)
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenMetaImage(const std::string& path)
+std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path)
 {
   HeaderText header(path);
   HeaderLines lines(path);

@@ -165,7 +165,7 @@ FileGeometry ParseGeometry(
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenNrrd(const std::string& path)
+std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path)
 {
   HeaderText header(path, { "byte skip", "line skip", "data file", "axis mins", "axis maxs" });
   HeaderLines lines(path);

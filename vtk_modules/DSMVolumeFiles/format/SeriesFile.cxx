@@ -41,29 +41,6 @@ std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& option
   return hash.Get();
 }
 
-/// But for what numbers in texts are rounded: by less than a thousandth of a sample, at any sample.
-bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
-{
-  constexpr double tolerance = 1e-3;
-  bool isSame = a.First == b.First && a.Points == b.Points;
-  for (int row = 0; row < 3; ++row)
-  {
-    double sample = 0.0; // how large it is along this axis of the world
-    double apart = std::abs(a.Origin[row] - b.Origin[row]);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double step = a.Direction[3 * row + axis] * a.Spacing[axis];
-      const double other = b.Direction[3 * row + axis] * b.Spacing[axis];
-      const std::int64_t last = a.First[axis] + a.Points[axis] - 1;
-      const auto far = static_cast<double>(std::max(std::abs(a.First[axis]), std::abs(last)));
-      sample = std::max(sample, std::abs(step));
-      apart += std::abs(step - other) * far;
-    }
-    isSame = isSame && apart <= tolerance * sample;
-  }
-  return isSame;
-}
-
 class SeriesFile final : public VolumeFile
 {
 public:

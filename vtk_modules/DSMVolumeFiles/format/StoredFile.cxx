@@ -26,23 +26,6 @@ constexpr std::uint64_t MostTogether = std::uint64_t(16) << 20;
 constexpr std::int64_t LeastPlanes = 16;
 constexpr std::uint64_t LongestRow = std::uint64_t(1) << 20;
 
-/// The first samples along each axis, of as many as are stored with z fastest; out: x fastest.
-void CopyReversed(const std::byte* from, const bricks::Index3& stored, std::byte* out,
-  const bricks::Index3& size, std::size_t sampleBytes)
-{
-  for (std::int64_t z = 0; z < size.z; ++z)
-  {
-    for (std::int64_t y = 0; y < size.y; ++y)
-    {
-      for (std::int64_t x = 0; x < size.x; ++x, out += sampleBytes)
-      {
-        const auto place = static_cast<std::size_t>((x * stored.y + y) * stored.z + z);
-        std::memcpy(out, from + place * sampleBytes, sampleBytes);
-      }
-    }
-  }
-}
-
 } // namespace
 
 ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
@@ -55,7 +38,7 @@ ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
 void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
 {
   ChunkGrid& grid = array.Grid;
-  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.IsReversed ||
+  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.Order != FastestX ||
     storage.HasHalo || grid.CountBytesOfChunks(BoxSamples, array.GetSampleBytes()) <= MostTogether)
   {
     return;
@@ -89,21 +72,38 @@ bricks::Box StoredFile::GetStoredBox(std::size_t array, const bricks::Index3& wh
                                               : box;
 }
 
-void StoredFile::ReplaceMissing(std::size_t array, std::byte* samples, std::int64_t count) const
+std::size_t StoredFile::GetStoredBytes(std::size_t array) const
+{
+  return bricks::GetBytes(this->Storages[array].Packed.GetStored()) *
+    static_cast<std::size_t>(this->Arrays[array].Components);
+}
+
+void StoredFile::Unpack(std::size_t array, std::int64_t samples, std::byte* out,
+  const dsm::FunctionRef<void(std::byte* to)>& read) const
 {
   const FileArray& what = this->Arrays[array];
+  const PackedValues& packed = this->Storages[array].Packed;
+  const std::size_t values =
+    static_cast<std::size_t>(samples) * static_cast<std::size_t>(what.Components);
+  if (packed.ArePacked())
+  {
+    ByteBuffer numbers(static_cast<std::size_t>(samples) * this->GetStoredBytes(array));
+    read(numbers.data());
+    packed.Unpack(numbers.data(), values, out);
+    return;
+  }
+  read(out);
   if (what.Valid.Exclude(what.Type))
   {
-    bricks::ReplaceMissing(what.Valid, what.Type, samples,
-      static_cast<std::size_t>(count) * static_cast<std::size_t>(what.Components));
+    bricks::ReplaceMissing(what.Valid, what.Type, out, values);
   }
 }
 
 void StoredFile::ReadChunk(
   std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
-  this->ReadStored(array, step, chunk, out);
-  this->ReplaceMissing(array, out, this->Arrays[array].Grid.GetBox(chunk).GetCount());
+  this->Unpack(array, this->Arrays[array].Grid.GetBox(chunk).GetCount(), out,
+    [&](std::byte* to) { this->ReadStored(array, step, chunk, to); });
 }
 
 void StoredFile::ReadStored(
@@ -111,7 +111,7 @@ void StoredFile::ReadStored(
 {
   const FileArray& what = this->Arrays[array];
   const Storage& storage = this->Storages[array];
-  const std::size_t sampleBytes = what.GetSampleBytes();
+  const std::size_t sampleBytes = this->GetStoredBytes(array);
   const bricks::Box box = what.Grid.GetBox(chunk);
   const auto count = static_cast<std::size_t>(box.GetCount());
   const bricks::Index3 whole = this->FindStored(array, chunk);
@@ -124,8 +124,8 @@ void StoredFile::ReadStored(
   const bricks::Box stored = this->GetStoredBox(array, whole);
   const std::size_t storedBytes = static_cast<std::size_t>(stored.GetCount()) * sampleBytes;
   const std::size_t allBytes = storedBytes * storage.Slices;
-  const bool isAll =
-    stored.Min == box.Min && stored.Max == box.Max && storage.Slices == 1 && !storage.IsReversed;
+  const bool isAll = stored.Min == box.Min && stored.Max == box.Max && storage.Slices == 1 &&
+    storage.Order == FastestX;
   try
   {
     // Unwanted parts of a large uncompressed chunk are not read.
@@ -154,9 +154,9 @@ void StoredFile::ReadStored(
     ByteBuffer samples(allBytes);
     storage.Codec.Decode(std::move(bytes), place->SkippedSteps, samples.data(), samples.size());
     const std::byte* const slice = samples.data() + place->Slice * storedBytes;
-    if (storage.IsReversed)
+    if (storage.Order != FastestX)
     {
-      CopyReversed(slice, stored.GetSize(), out, box.GetSize(), sampleBytes);
+      CopyOrdered(slice, stored.GetSize(), storage.Order, out, box.GetSize(), sampleBytes);
     }
     else
     {
@@ -189,8 +189,8 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
   const Storage& storage = this->Storages[array];
   const FileArray& what = this->Arrays[array];
   // Only the decoder knows whether the chunk has a halo.
-  const std::uint64_t most = storage.Codec.CountMostStored(
-    bytes, storage.Codec.KeepsHalo() ? what.Grid.CountMostOfHalo() * what.GetSampleBytes() : 0);
+  const std::uint64_t most = storage.Codec.CountMostStored(bytes,
+    storage.Codec.KeepsHalo() ? what.Grid.CountMostOfHalo() * this->GetStoredBytes(array) : 0);
   if (place.Bytes > most)
   {
     throw dsm::Error("it has " + std::to_string(place.Bytes) + " bytes instead of " +
@@ -216,12 +216,12 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   std::size_t array, const Place& place, const bricks::Index3& whole, const bricks::Box& part) const
 {
   const Storage& storage = this->Storages[array];
-  const std::size_t sampleBytes = this->Arrays[array].GetSampleBytes();
+  const std::size_t sampleBytes = this->GetStoredBytes(array);
   const bricks::Box stored = this->GetStoredBox(array, whole);
   const bricks::Index3 size = stored.GetSize();
   std::vector<PositionedFile::Piece> pieces;
   const std::uint64_t sliceBytes = static_cast<std::uint64_t>(stored.GetCount()) * sampleBytes;
-  if (!storage.Codec.KeepsPlaces() || storage.IsReversed ||
+  if (!storage.Codec.KeepsPlaces() || storage.Order != FastestX ||
     place.Bytes != sliceBytes * storage.Slices)
   {
     return pieces;
@@ -266,16 +266,20 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
   {
     return false;
   }
-  try
-  {
-    ReadPieces(this->Storages[array], *place, pieces, out,
-      static_cast<std::size_t>(part.GetCount()) * this->Arrays[array].GetSampleBytes());
-  }
-  catch (const dsm::Error& error)
-  {
-    throw FileError({ place->File->GetPath(), this->Arrays[array].Name, whole }, error);
-  }
-  this->ReplaceMissing(array, out, part.GetCount());
+  const std::int64_t count = part.GetCount();
+  this->Unpack(array, count, out,
+    [&](std::byte* to)
+    {
+      try
+      {
+        ReadPieces(this->Storages[array], *place, pieces, to,
+          static_cast<std::size_t>(count) * this->GetStoredBytes(array));
+      }
+      catch (const dsm::Error& error)
+      {
+        throw FileError({ place->File->GetPath(), this->Arrays[array].Name, whole }, error);
+      }
+    });
   return true;
 }
 
@@ -290,7 +294,7 @@ bool StoredFile::ReadWithHalo(
   {
     return false;
   }
-  const std::size_t sampleBytes = what.GetSampleBytes();
+  const std::size_t sampleBytes = this->GetStoredBytes(array);
   const bricks::Box box = what.Grid.GetBox(chunk);
   const bricks::Box all = what.Grid.GetBoxWithHalo(chunk);
   const bricks::Box stored{ box.Min, box.Min + what.Grid.ChunkSamples };
@@ -325,14 +329,17 @@ bool StoredFile::ReadWithHalo(
   {
     throw FileError({ place->File->GetPath(), what.Name, chunk }, error);
   }
-  CopyBox(box, samples.data(), stored, out, all, sampleBytes);
-  const std::byte* from = halo.data();
-  for (const bricks::Box& part : what.Grid.GetHalo(chunk))
-  {
-    CopyBox(part, from, part, out, all, sampleBytes);
-    from += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
-  }
-  this->ReplaceMissing(array, out, all.GetCount());
+  this->Unpack(array, all.GetCount(), out,
+    [&](std::byte* to)
+    {
+      CopyBox(box, samples.data(), stored, to, all, sampleBytes);
+      const std::byte* from = halo.data();
+      for (const bricks::Box& part : what.Grid.GetHalo(chunk))
+      {
+        CopyBox(part, from, part, to, all, sampleBytes);
+        from += static_cast<std::size_t>(part.GetCount()) * sampleBytes;
+      }
+    });
   return true;
 }
 

@@ -3,8 +3,11 @@
 #define vol_StoredFile_h
 
 #include "DSMCore/base/Error.h"
+#include "DSMCore/base/FunctionRef.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/base/SpaceOrder.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/PackedValues.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <memory>
@@ -44,14 +47,14 @@ protected:
   struct Storage
   {
     ChunkCodec Codec;
-    /// Value of a chunk that is not stored: one sample, or one component if all are equal.
+    PackedValues Packed;
+    /// Numbers of a chunk that is not stored: one sample, or one component if all are equal.
     std::vector<std::byte> Fill;
     /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
     bricks::Index3 StoredSamples{ 0 };
     /// Chunks at the volume's ends are as large as all others; else they end with it.
     bool HasWholeChunks = true;
-    /// The samples of a chunk are stored with z fastest.
-    bool IsReversed = false;
+    SpaceOrder Order = FastestX; ///< of the samples of a chunk
     /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
     /// more axes than three.
     std::size_t Slices = 1;
@@ -75,11 +78,14 @@ protected:
 
   std::vector<Storage> Storages; ///< one for each array
 
-  /// To be called with so many samples of an array that were read.
-  void ReplaceMissing(std::size_t array, std::byte* samples, std::int64_t count) const;
+  /// Returns the bytes of a sample's numbers in the file.
+  std::size_t GetStoredBytes(std::size_t array) const;
+  /// Makes values of so many samples of an array: `read(to)` reads their numbers.
+  void Unpack(std::size_t array, std::int64_t samples, std::byte* out,
+    const dsm::FunctionRef<void(std::byte* to)>& read) const;
 
 private:
-  /// As ReadChunk, with missing values as they are stored.
+  /// As ReadChunk, with numbers as they are stored.
   void ReadStored(std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const;
   /// Repeats the bytes of `fill` until `out` has so many bytes.
   static void FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes);

@@ -111,7 +111,7 @@ Format TryFindFormat(const std::string& path)
   }
 }
 
-std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
+std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
 {
   if (glm::any(glm::lessThanEqual(options.Samples, bricks::Index3(0))))
   {
@@ -129,13 +129,11 @@ std::shared_ptr<const VolumeFile> OpenRaw(const std::string& path, const OpenOpt
   values.BigEndian = options.BigEndian;
   values.Offset = static_cast<std::int64_t>(
     std::min<std::uint64_t>(options.HeaderBytes, std::numeric_limits<std::int64_t>::max()));
-  FileGeometry geometry;
-  std::copy_n(options.Spacing, 3, geometry.Spacing);
-  return OpenBareFile(path, values, geometry);
+  return OpenBareFile(path, values, {});
 }
 
 /// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
-std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
+std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
 {
   const PathKind kind = FindPathKind(path);
   if (kind == PathKind::Nothing)
@@ -156,7 +154,7 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
     case Format::MetaImage:
       return OpenMetaImage(path);
     case Format::Zarr:
-      return OpenZarr(FindZarrFolder(path), options.Level);
+      return OpenZarr(FindZarrFolder(path), options);
     case Format::Hdf:
 #ifdef DSM_HAS_HDF5
       return OpenHdf(path, options);
@@ -185,7 +183,7 @@ std::shared_ptr<const VolumeFile> OpenAsItIs(const std::string& path, const Open
 }
 
 /// Gives what other libraries throw the file's name.
-std::shared_ptr<const VolumeFile> OpenGuarded(const std::string& path, const OpenOptions& options)
+std::shared_ptr<VolumeFile> OpenGuarded(const std::string& path, const OpenOptions& options)
 {
   std::string why;
   try
@@ -214,6 +212,23 @@ VolumeFile::VolumeFile(std::string path)
 {
   static std::atomic<std::uint64_t> last{ 0 };
   this->Number = ++last;
+}
+
+void VolumeFile::SetPlace(const OpenOptions& options)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto place = static_cast<std::size_t>(axis);
+    if (options.Spacing[place] != 0.0)
+    {
+      this->Geometry.Spacing[axis] = options.Spacing[place];
+      this->Geometry.Coordinates[place].clear();
+    }
+    if (options.Origin)
+    {
+      this->Geometry.Origin[axis] = (*options.Origin)[place];
+    }
+  }
 }
 
 std::string DescribeShape(const bricks::Index3& samples)
@@ -254,6 +269,32 @@ void CheckSizes(const std::string& path, const FileArray& array, std::size_t sli
   {
     refuse("chunks of " + DescribeShape(array.Grid.ChunkSamples) + " samples");
   }
+}
+
+bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
+{
+  constexpr double tolerance = 1e-3;
+  bool isSame = a.First == b.First && a.Points == b.Points;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    isSame = isSame && a.Coordinates[axis] == b.Coordinates[axis];
+  }
+  for (int row = 0; row < 3; ++row)
+  {
+    double sample = 0.0; // how large it is along this axis of the world
+    double apart = std::abs(a.Origin[row] - b.Origin[row]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double step = a.Direction[3 * row + axis] * a.Spacing[axis];
+      const double other = b.Direction[3 * row + axis] * b.Spacing[axis];
+      const std::int64_t last = a.First[axis] + a.Points[axis] - 1;
+      const auto far = static_cast<double>(std::max(std::abs(a.First[axis]), std::abs(last)));
+      sample = std::max(sample, std::abs(step));
+      apart += std::abs(step - other) * far;
+    }
+    isSame = isSame && apart <= tolerance * sample;
+  }
+  return isSame;
 }
 
 void CheckGeometry(const std::string& path, const FileGeometry& geometry)
@@ -307,6 +348,7 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options)
 {
   auto file = OpenGuarded(path, options);
+  file->SetPlace(options);
   CheckGeometry(path, file->GetGeometry());
   if (options.Level != 0 && options.Level >= file->GetLevels())
   {

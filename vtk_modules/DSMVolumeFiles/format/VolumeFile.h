@@ -6,18 +6,17 @@
 #include "DSMBricks/base/ValidValues.h"
 #include "DSMVolumeFiles/base/ChunkGrid.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace vol
 {
-
-/// The attributes of an array that declare a value missing; the first that is a number counts.
-constexpr const char* MissingValueAttributes[] = { "_FillValue", "missing_value" };
 
 /// One array of a volume file.
 struct FileArray
@@ -45,9 +44,12 @@ std::string DescribeShape(const bricks::Index3& samples);
 /// `slices`: boxes of samples in what is stored as one chunk.
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
 
-/// Placement of the samples in world space, as in vtkImageData.
+/// Placement of the samples in world space, as in vtkImageData, or as in vtkRectilinearGrid.
 struct FileGeometry
 {
+  /// Positions along x, y and z, which rise or fall everywhere; where an axis has none, its positions come from origin and
+  /// spacing. Not along axes that are turned.
+  std::array<std::vector<double>, 3> Coordinates;
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };
   double Direction[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
@@ -55,9 +57,15 @@ struct FileGeometry
   bricks::Index3 Points{ 0 }; ///< points along each axis
 };
 
+/// Returns whether two places are one, but for what numbers in texts are rounded: by less than a thousandth of a sample, at
+/// any sample.
+bool IsSamePlace(const FileGeometry& a, const FileGeometry& b);
+
 /// Throws dsm::Error, which names the file, where a number is not finite, or where the directions of the axes lie in one
 /// plane: no world position would have an index.
 void CheckGeometry(const std::string& path, const FileGeometry& geometry);
+
+struct OpenOptions;
 
 /// A volume in a file, or in a folder of files, of which no values are read when it is opened. Its members may
 /// be called by any thread, at the same time.
@@ -148,6 +156,9 @@ public:
   };
   virtual Index ReadIndex(std::size_t /*array*/, int /*step*/) const { return {}; }
 
+  /// Before anybody else has the file: takes spacing and origin where the options have them.
+  void SetPlace(const OpenOptions& options);
+
 protected:
   explicit VolumeFile(std::string path);
 
@@ -185,9 +196,19 @@ struct OpenOptions
     int Components = 1;
     bool BigEndian = false;
     std::uint64_t HeaderBytes = 0;
-    double Spacing[3] = { 1.0, 1.0, 1.0 };
   };
   Raw Bare;
+
+  /// Distance of samples along x, y and z, instead of what the file says; 0: as it says.
+  std::array<double, 3> Spacing{ 0.0, 0.0, 0.0 };
+  /// Position of the first sample, likewise; none: as it says.
+  std::optional<std::array<double, 3>> Origin;
+
+  /// Returns whether nothing is left that a file could say of distances.
+  bool HasSpacing() const
+  {
+    return this->Spacing[0] != 0.0 && this->Spacing[1] != 0.0 && this->Spacing[2] != 0.0;
+  }
 };
 
 /// Opens a file (or a folder: Zarr) of any format that this build knows. Throws dsm::Error, which says what is

@@ -3,8 +3,7 @@
 #define vol_ZarrAxes_h
 
 #include "DSMBricks/base/Box.h"
-
-#include <nlohmann/json.hpp>
+#include "DSMVolumeFiles/format/AxisNotes.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,13 +22,12 @@ struct ZarrAxes
   int Time = -1;            ///< which one; -1: none
   std::int64_t Leading = 0; ///< how many are before those of space
   std::size_t Behind = 0;   ///< how many are behind them: 1 where the last one has components
-  bool FromX = false;       ///< those of space are x, y, z, not z, y, x
+  SpaceOrder Order = FastestX;
 
-  /// Finds the axes of an array in this folder that has `count` axes, at least three. `named`: names, or OME's
-  /// descriptions of the axes. If it is null, or has another count, the first of five axes is time. Case is
-  /// ignored, and so are unknown names. A last axis of four or five that has channels has components. Throws
-  /// dsm::Error if the last three of the other axes, and only these, are not in space, or are in another order.
-  static ZarrAxes Find(const std::string& folder, const nlohmann::json& named, std::size_t count);
+  /// Finds the axes of an array in this folder that has `count` axes, at least three. `notes`: as many, or else nothing is
+  /// known, and the first of five axes is time. A last axis of four or five that has channels has components. Throws
+  /// dsm::Error if the last three of the other axes, and only these, are not in space.
+  static ZarrAxes Find(const std::string& folder, const AxisNotes& notes, std::size_t count);
 
   /// Which one of an array, or of its transformation, of so many axes is x, y or z.
   std::size_t FindInSpace(std::size_t count, int axis) const;

@@ -5,14 +5,17 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/format/OmeScales.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
 #include "DSMVolumeFiles/format/ZarrAxes.h"
 #include "DSMVolumeFiles/format/ZarrJson.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
+#include "DSMVolumeFiles/format/ZarrVector.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <system_error>
@@ -61,8 +64,9 @@ std::vector<std::filesystem::path> FindFolders(const std::string& path)
 class ZarrFile final : public StoredFile
 {
 public:
-  ZarrFile(const std::string& path, int level)
+  ZarrFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
+    , IsPlaced(!options.HasSpacing())
   {
     const Json attributes = ReadZarrAttributes(path);
     const Json& named = ZarrJson::Find(attributes, "ome");
@@ -72,7 +76,7 @@ public:
     {
       if (scales.is_array() && !scales.empty())
       {
-        this->OpenScale(scales[0], ome, level);
+        this->OpenScale(scales[0], ome, options.Level);
       }
       else
       {
@@ -154,16 +158,18 @@ private:
   std::uint64_t MakeStamp() const
   {
     bricks::ByteHash hash;
-    hash.Add(&this->Geometry, sizeof(this->Geometry));
     for (std::size_t array = 0; array < this->Sources.size(); ++array)
     {
       const Source& source = this->Sources[array];
       const std::string& name = this->Arrays[array].Name;
-      const std::int64_t numbers[] = { source.Axes.Time, source.Axes.FromX ? 1 : 0,
-        this->Arrays[array].Components, static_cast<std::int64_t>(name.size()) };
+      hash.Add(source.Axes.Order.data(), sizeof(SpaceOrder));
+      const std::int64_t numbers[] = { source.Axes.Time, this->Arrays[array].Components,
+        static_cast<std::int64_t>(name.size()) };
       hash.Add(numbers, sizeof(numbers));
       hash.Add(name.data(), name.size());
-      hash.Add(&source.Data->Missing, sizeof(double));
+      const std::uint64_t packing = this->Storages[array].Packed.GetStamp();
+      hash.Add(&packing, sizeof(packing));
+      hash.Add(&this->Arrays[array].Valid, sizeof(bricks::ValidValues));
       hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
       for (const char* metadata : { "/.zarray", "/zarr.json" })
       {
@@ -191,15 +197,23 @@ private:
           (this->Levels > 0 ? "; valid levels are 0 to " + std::to_string(this->Levels - 1) : "") +
           ".");
     }
-    const Json& dataset = datasets.at(static_cast<std::size_t>(level));
-    const std::string folder =
-      JoinInside(this->Path, ZarrJson::GetText(this->Path, dataset, "path"));
+    const auto readNumbers = [this](const std::string& name)
+    { return ReadZarrVector(JoinInside(this->Path, name), FileLimits::Axes); };
+    const OmeLevel found = OmeLevel::Find(this->Path, scale, static_cast<std::size_t>(level),
+      this->IsPlaced ? readNumbers : OmeLevel::ReadNumbers(), this->Warnings);
+    const std::string folder = JoinInside(this->Path, found.Array);
     const auto data = Read(folder);
-    const ZarrAxes axes = ZarrAxes::Find(folder, ZarrJson::Find(scale, "axes"), data->Shape.size());
-    // The level's own come first.
-    for (const Json* const from : { &dataset, &scale })
+    if (!found.Axes.empty() && found.Axes.size() != data->Shape.size())
     {
-      this->Locate(ZarrJson::Find(*from, "coordinateTransformations"), axes);
+      throw FileError(folder,
+        "has " + std::to_string(data->Shape.size()) + " axes, but its group declares " +
+          std::to_string(found.Axes.size()) + ".");
+    }
+    const ZarrAxes axes = ZarrAxes::Find(folder, found.Axes, data->Shape.size());
+    this->LocateBy(found.Axes, axes, data->Shape);
+    if (found.Direction)
+    {
+      std::copy(found.Direction->begin(), found.Direction->end(), this->Geometry.Direction);
     }
     const Json& channels = ZarrJson::Find(ZarrJson::Find(ome, "omero"), "channels");
     const auto getName = [&](std::int64_t channel, std::int64_t count)
@@ -215,34 +229,73 @@ private:
     this->Add(folder, data, axes, getName);
   }
 
-  /// Scale and translation, the slowest axis first.
-  void Locate(const Json& transformations, const ZarrAxes& axes)
+  /// By what the file says of the axes of an array of this shape.
+  void LocateBy(const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
   {
-    for (const Json& one : transformations)
+    if (notes.size() != shape.size())
     {
-      const std::string type = ZarrJson::GetText(this->Path, one, "type");
-      const Json& numbers = ZarrJson::Find(one, type.c_str());
-      if (type != "scale" && type != "translation")
+      return;
+    }
+    std::array<const AxisNote*, 3> inSpace{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inSpace[static_cast<std::size_t>(axis)] = &notes[axes.FindInSpace(shape.size(), axis)];
+    }
+    if (this->IsPlaced)
+    {
+      PlaceAxes(this->Path, inSpace, this->Geometry, this->Warnings);
+    }
+    if (axes.Time >= 0)
+    {
+      const auto time = static_cast<std::size_t>(axes.Time);
+      const auto most = static_cast<std::int64_t>(FileLimits::Steps);
+      this->Times =
+        FindTimes(notes[time], static_cast<int>(std::min(shape[time], most)), this->Warnings);
+    }
+  }
+
+  static AxisNotes NameAxes(const std::string& folder, const ZarrMetadata& data)
+  {
+    AxisNotes notes;
+    const std::size_t count = data.Shape.size();
+    const bool areNamed = data.Axes.is_array() && data.Axes.size() == count;
+    for (std::size_t axis = 0; axis < count; ++axis)
+    {
+      AxisNote note;
+      note.Name = areNamed && data.Axes[axis].is_string() ? data.Axes[axis].get<std::string>() : "";
+      CheckLimit(folder, "bytes of an axis's name", note.Name.size(), FileLimits::NameBytes);
+      notes.push_back(std::move(note));
+    }
+    return notes;
+  }
+
+  /// What the array in a folder, and those beside it that have the names of its axes, say of its axes.
+  AxisNotes ReadNotes(const std::string& folder, const ZarrMetadata& data) const
+  {
+    AxisNotes notes = NameAxes(folder, data);
+    const std::size_t count = data.Shape.size();
+    const ZarrAxes axes = ZarrAxes::Find(folder, notes, count);
+    TakeVoxelSize([&](const char* name)
+      { return ZarrJson::ToNumbers(ZarrJson::Find(data.Attributes, name)); },
+      notes, static_cast<std::size_t>(axes.Leading));
+    const std::string beside = std::filesystem::path(folder).parent_path().string();
+    for (std::size_t axis = 0; axis < count; ++axis)
+    {
+      AxisNote& note = notes[axis];
+      const std::filesystem::path name(note.Name);
+      if (!note.Name.empty() && name == name.filename() && note.Name != ".." &&
+        FindPathKind(beside + "/" + note.Name) == PathKind::Directory)
       {
-        continue;
-      }
-      CheckLimit(this->Path, "numbers in a transformation", numbers.size(), FileLimits::Axes);
-      const auto values =
-        numbers.is_null() ? std::vector<double>() : numbers.get<std::vector<double>>();
-      for (int axis = 0; axis < 3 && values.size() >= ZarrAxes::InSpace + axes.Behind; ++axis)
-      {
-        const double value = values[axes.FindInSpace(values.size(), axis)];
-        if (type == "scale")
+        const std::string coordinates = beside + "/" + note.Name;
+        auto numbers = ReadZarrVector(coordinates, static_cast<std::uint64_t>(data.Shape[axis]));
+        if (numbers.size() == static_cast<std::size_t>(data.Shape[axis]))
         {
-          this->Geometry.Spacing[axis] *= value;
-          this->Geometry.Origin[axis] *= value;
-        }
-        else if (type == "translation")
-        {
-          this->Geometry.Origin[axis] += value;
+          note.Coordinates = std::move(numbers);
+          note.Unit = ZarrJson::GetText(coordinates, ReadZarrAttributes(coordinates), "units");
         }
       }
     }
+    return notes;
   }
 
   /// The path is an array, or a group of arrays.
@@ -251,7 +304,13 @@ private:
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      this->Add(folder, data, ZarrAxes::Find(folder, data->Axes, data->Shape.size()),
+      const AxisNotes notes = this->ReadNotes(folder, *data);
+      const ZarrAxes axes = ZarrAxes::Find(folder, notes, data->Shape.size());
+      if (this->Arrays.empty())
+      {
+        this->LocateBy(notes, axes, data->Shape);
+      }
+      this->Add(folder, data, axes,
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
@@ -274,7 +333,7 @@ private:
         {
           return std::nullopt;
         }
-        const ZarrAxes axes = ZarrAxes::Find(folder, data->Axes, data->Shape.size());
+        const ZarrAxes axes = ZarrAxes::Find(folder, NameAxes(folder, *data), data->Shape.size());
         return VolumeShape{ axes.GetSpace(data->Shape),
           axes.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(axes.Time)] };
       }
@@ -352,7 +411,7 @@ private:
     const std::string& folder, const FileArray& array, const Storage& storage)
   {
     if (storage.StoredSamples != bricks::Index3(0) ||
-      (storage.Codec.KeepsPlaces() && !storage.IsReversed))
+      (storage.Codec.KeepsPlaces() && storage.Order == FastestX))
     {
       return;
     }
@@ -394,6 +453,11 @@ private:
       FileLimits::Arrays);
     this->Steps = std::max(this->Steps, static_cast<int>(times));
     this->Geometry.Points = axes.GetSpace(data->Shape);
+    PackedValues packed = data->Packed;
+    packed.TakeAttributes([&](const char* attribute)
+      { return ZarrJson::ToNumbers(ZarrJson::Find(data->Attributes, attribute)); },
+      ZarrJson::GetText(folder, data->Attributes, "_Unsigned") == "true", getName(0, channels),
+      this->Warnings);
     for (std::int64_t channel = 0; channel < channels; ++channel)
     {
       FileArray array;
@@ -408,12 +472,12 @@ private:
           rest /= getLength(axis);
         }
       }
-      array.Type = data->Type;
-      array.Valid.Fill = data->Missing;
+      array.Type = packed.GetStored();
       array.Components = static_cast<int>(axes.GetComponents(data->Shape));
       array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
       Storage storage;
       storage.Codec = data->Codec;
+      storage.Packed = packed;
       storage.Fill = data->Fill;
       for (std::size_t axis = 0; axis < place.size(); ++axis)
       {
@@ -421,7 +485,11 @@ private:
         storage.Slices *= static_cast<std::size_t>(data->ChunkShape[axis]);
       }
       CheckSizes(folder, array, storage.Slices);
-      storage.IsReversed = data->FortranOrder != axes.FromX;
+      storage.Order = axes.Order;
+      if (data->FortranOrder)
+      {
+        std::reverse(storage.Order.begin(), storage.Order.end());
+      }
       CheckComponents(folder, *data, axes);
       if (data->FortranOrder && storage.Slices > 1)
       {
@@ -431,6 +499,8 @@ private:
       }
       CutPlainChunks(array, storage);
       CheckChunkBytes(folder, array, storage);
+      array.Type = packed.GetType();
+      array.Valid = packed.GetValid();
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
       this->Sources.push_back({ folder, data, axes, std::move(place) });
@@ -524,6 +594,7 @@ private:
     return place;
   }
 
+  bool IsPlaced;               ///< by what it says
   std::vector<Source> Sources; ///< one for each array
   std::unordered_set<std::string> Names;
   mutable ZarrParts Parts;
@@ -531,9 +602,9 @@ private:
 
 } // namespace
 
-std::shared_ptr<const VolumeFile> OpenZarr(const std::string& path, int level)
+std::shared_ptr<VolumeFile> OpenZarr(const std::string& path, const OpenOptions& options)
 {
-  return std::make_shared<ZarrFile>(path, level);
+  return std::make_shared<ZarrFile>(path, options);
 }
 
 bool MayBeZarr(const std::string& path)

@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -128,6 +129,15 @@ std::vector<std::int64_t> ZarrJson::GetIntegers(const std::string& folder,
     numbers.push_back(*number);
   }
   return numbers;
+}
+
+std::vector<double> ZarrJson::ToNumbers(const nlohmann::json& value)
+{
+  const Json all = value.is_array() ? value : Json::array({ value });
+  const auto isNumber = [](const Json& one) { return one.is_number(); };
+  return all.size() <= FileLimits::Axes && std::all_of(all.begin(), all.end(), isNumber)
+    ? all.get<std::vector<double>>()
+    : std::vector<double>();
 }
 
 } // namespace vol

@@ -32,6 +32,9 @@ std::string GetText(const std::string& folder, const nlohmann::json& object, con
 std::vector<std::int64_t> GetIntegers(const std::string& folder, const nlohmann::json& object,
   const char* name, std::uint64_t count, std::int64_t least, std::int64_t most);
 
+/// Returns a number, or those of an array of at most FileLimits::Axes; none where it is no number, or not all are.
+std::vector<double> ToNumbers(const nlohmann::json& value);
+
 /// Throws dsm::Error: the array or group in a folder cannot be read.
 [[noreturn]] void Refuse(const std::string& folder, const std::string& why);
 

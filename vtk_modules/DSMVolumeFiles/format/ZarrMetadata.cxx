@@ -34,9 +34,14 @@ using ZarrJson::Refuse;
   Refuse(folder, "scalar type " + Quote(text) + " is not supported.");
 }
 
-/// Version 2: "<f4". Returns whether the bytes are the other way round than the machine's.
-bool ParseType2(const std::string& folder, const std::string& text, bricks::ScalarType& type)
+/// Version 2: "<f4". `isSwapped`: set to whether the bytes are the other way round than the machine's.
+PackedValues ParseType2(const std::string& folder, const std::string& text, bool& isSwapped)
 {
+  isSwapped = !text.empty() && text[0] == '>';
+  if (text == "<f2" || text == ">f2")
+  {
+    return PackedValues::OfHalves();
+  }
   using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "i1", Type::Int8 }, { "u1", Type::UInt8 },
     { "b1", Type::UInt8 }, { "i2", Type::Int16 }, { "u2", Type::UInt16 }, { "i4", Type::Int32 },
@@ -47,12 +52,15 @@ bool ParseType2(const std::string& folder, const std::string& text, bricks::Scal
   {
     RefuseType(folder, text);
   }
-  type = known->second;
-  return text[0] == '>' && bricks::GetBytes(type) > 1;
+  return PackedValues(known->second);
 }
 
-void ParseType3(const std::string& folder, const std::string& text, bricks::ScalarType& type)
+PackedValues ParseType3(const std::string& folder, const std::string& text)
 {
+  if (text == "float16")
+  {
+    return PackedValues::OfHalves();
+  }
   using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "int8", Type::Int8 },
     { "uint8", Type::UInt8 }, { "bool", Type::UInt8 }, { "int16", Type::Int16 },
@@ -64,7 +72,7 @@ void ParseType3(const std::string& folder, const std::string& text, bricks::Scal
   {
     RefuseType(folder, text);
   }
-  type = known->second;
+  return PackedValues(known->second);
 }
 
 /// Version 3 may have it as bits: "0x7fc00000".
@@ -132,9 +140,24 @@ std::optional<T> ToValue(const Json& number)
 }
 
 std::vector<std::byte> ParseFill(
-  const std::string& folder, const Json& value, bricks::ScalarType type)
+  const std::string& folder, const Json& value, const PackedValues& packed)
 {
-  return bricks::Dispatch(type,
+  if (packed.AreHalves())
+  {
+    const std::string text = value.is_string() ? value.get<std::string>() : std::string();
+    if (text.rfind("0x", 0) == 0)
+    {
+      const auto bits = ParseFillText<std::uint16_t>(folder, text);
+      std::vector<std::byte> bytes(sizeof(bits));
+      std::memcpy(bytes.data(), &bits, sizeof(bits));
+      return bytes;
+    }
+    const auto single = ParseFill(folder, value, PackedValues(bricks::ScalarType::Float32));
+    float number;
+    std::memcpy(&number, single.data(), sizeof(number));
+    return PackedValues::ToHalf(number);
+  }
+  return bricks::Dispatch(packed.GetStored(),
     [&](auto zero)
     {
       using T = decltype(zero);
@@ -255,11 +278,13 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   {
     Refuse(folder, "its values are records with several fields, which is not supported.");
   }
-  if (ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), data.Type))
+  bool isSwapped = false;
+  data.Packed = ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), isSwapped);
+  if (isSwapped && bricks::GetBytes(data.Packed.GetStored()) > 1)
   {
-    steps.push_back({ "swap", bricks::GetBytes(data.Type) });
+    steps.push_back({ "swap", bricks::GetBytes(data.Packed.GetStored()) });
   }
-  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
+  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Packed);
   const Json& filters = ZarrJson::Find(json, "filters");
   CheckLimit(folder, "filters", filters.size(), FileLimits::Filters);
   for (const Json& filter : filters)
@@ -418,8 +443,8 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
   // A shard may be larger than the array.
   constexpr std::int64_t mostOfShard = std::int64_t(1) << 52;
   data.ChunkShape = GetShape(folder, GetConfiguration(grid), "chunk_shape", mostOfShard);
-  ParseType3(folder, GetName(folder, ZarrJson::Find(json, "data_type")), data.Type);
-  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Type);
+  data.Packed = ParseType3(folder, GetName(folder, ZarrJson::Find(json, "data_type")));
+  data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Packed);
   const Json& encoding = ZarrJson::Find(json, "chunk_key_encoding");
   const bool isDefault = encoding.empty() || GetName(folder, encoding) == "default";
   data.Prefix = isDefault ? "c" : "";
@@ -435,23 +460,9 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     codecs = &ZarrJson::Find(configuration, "codecs");
   }
   data.Codec = MakeCodec(folder,
-    ParseCodecs3(
-      folder, *codecs, bricks::GetBytes(data.Type), data.Shape.size(), data.FortranOrder));
+    ParseCodecs3(folder, *codecs, bricks::GetBytes(data.Packed.GetStored()), data.Shape.size(),
+      data.FortranOrder));
   return data;
-}
-
-double FindMissing(const Json& attributes)
-{
-  for (const char* const name : MissingValueAttributes)
-  {
-    const Json& found = ZarrJson::Find(attributes, name);
-    const Json& value = found.is_array() && found.size() == 1 ? found.front() : found;
-    if (value.is_number())
-    {
-      return value.get<double>();
-    }
-  }
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace
@@ -480,12 +491,11 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
     }
     ZarrMetadata data =
       version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
-    const Json attributes = ReadZarrAttributes(folder);
+    data.Attributes = ReadZarrAttributes(folder);
     if (!version2.is_null()) // as xarray writes them
     {
-      data.Axes = ZarrJson::Find(attributes, "_ARRAY_DIMENSIONS");
+      data.Axes = ZarrJson::Find(data.Attributes, "_ARRAY_DIMENSIONS");
     }
-    data.Missing = FindMissing(attributes);
     return data;
   }
   catch (const Json::exception& error)

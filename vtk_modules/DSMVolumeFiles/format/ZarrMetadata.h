@@ -2,13 +2,12 @@
 #ifndef vol_ZarrMetadata_h
 #define vol_ZarrMetadata_h
 
-#include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/PackedValues.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,10 +30,9 @@ struct ZarrMetadata
   std::vector<std::int64_t> Shape; ///< the slowest axis first
   std::vector<std::int64_t> ChunkShape;
   nlohmann::json Axes; ///< their names, where these are told
-  bricks::ScalarType Type = bricks::ScalarType::UInt8;
-  std::vector<std::byte> Fill; ///< one value, of chunks that are not stored
-  double Missing =
-    std::numeric_limits<double>::quiet_NaN(); ///< by the array's attributes; NaN: none
+  PackedValues Packed;
+  std::vector<std::byte> Fill; ///< one number, of chunks that are not stored
+  nlohmann::json Attributes;
   ChunkCodec Codec;
   bool FortranOrder = false; ///< within a chunk the first axis is the fastest
   std::optional<Sharding> Shards;

@@ -118,7 +118,9 @@ struct Opening
   std::int32_t RawComponents;
   std::int32_t RawBigEndian;
   std::uint64_t RawHeaderBytes;
-  double RawSpacing[3];
+  double Spacing[3];
+  double Origin[3];
+  std::int32_t HasOrigin;
 };
 
 std::vector<char> EncodeOpening(const vtkDSMFileValues& values)
@@ -130,10 +132,12 @@ std::vector<char> EncodeOpening(const vtkDSMFileValues& values)
   opening.RawComponents = options.Bare.Components;
   opening.RawBigEndian = options.Bare.BigEndian ? 1 : 0;
   opening.RawHeaderBytes = options.Bare.HeaderBytes;
+  opening.HasOrigin = options.Origin ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     opening.RawSamples[axis] = options.Bare.Samples[axis];
-    opening.RawSpacing[axis] = options.Bare.Spacing[axis];
+    opening.Spacing[axis] = options.Spacing[static_cast<std::size_t>(axis)];
+    opening.Origin[axis] = options.Origin ? (*options.Origin)[static_cast<std::size_t>(axis)] : 0.0;
   }
   std::vector<char> bytes(sizeof(opening));
   std::memcpy(bytes.data(), &opening, sizeof(opening));
@@ -165,7 +169,11 @@ std::shared_ptr<const vol::VolumeFile> OpenAs(
   for (int axis = 0; axis < 3; ++axis)
   {
     options.Bare.Samples[axis] = opening.RawSamples[axis];
-    options.Bare.Spacing[axis] = opening.RawSpacing[axis];
+    options.Spacing[static_cast<std::size_t>(axis)] = opening.Spacing[axis];
+  }
+  if (opening.HasOrigin != 0)
+  {
+    options.Origin = { opening.Origin[0], opening.Origin[1], opening.Origin[2] };
   }
   std::vector<std::string> words; // the dataset, and then the files
   for (auto word = bytes.begin() + sizeof(opening); word != bytes.end();)

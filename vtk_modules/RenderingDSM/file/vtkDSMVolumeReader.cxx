@@ -288,7 +288,16 @@ vol::OpenOptions vtkDSMVolumeReader::GetOptions() const
   options.Bare.BigEndian = this->RawBigEndian;
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
-  std::copy_n(this->RawSpacing, 3, options.Bare.Spacing);
+  const bool isRaw = this->GetRawFile();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const bool isGiven = this->Spacing[axis] != 0.0 || !isRaw;
+    options.Spacing[axis] = isGiven ? this->Spacing[axis] : this->RawSpacing[axis];
+  }
+  if (this->OwnOrigin)
+  {
+    options.Origin = { this->Origin[0], this->Origin[1], this->Origin[2] };
+  }
   return options;
 }
 
@@ -556,6 +565,11 @@ void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << indent << "Level: " << this->Level << "\n";
   os << indent << "DatasetName: " << this->DatasetName << "\n";
+  os << indent << "Spacing: " << this->Spacing[0] << " " << this->Spacing[1] << " "
+     << this->Spacing[2] << "\n";
+  os << indent << "OwnOrigin: " << this->OwnOrigin << "\n";
+  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " "
+     << this->Origin[2] << "\n";
   os << indent << "RawDimensions: " << this->RawDimensions[0] << " " << this->RawDimensions[1]
      << " " << this->RawDimensions[2] << "\n";
   os << indent << "RawScalarType: " << this->RawScalarType << "\n";

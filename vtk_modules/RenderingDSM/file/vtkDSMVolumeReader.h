@@ -86,9 +86,23 @@ public:
 
   ///@{
   /**
+   * Distance of samples along x, y and z, instead of what the file says; 0 (the default): as it says. With OwnOrigin
+   * (false by default), the position of the first sample, likewise.
+   */
+  vtkSetVector3Macro(Spacing, double);
+  vtkGetVector3Macro(Spacing, double);
+  vtkSetVector3Macro(Origin, double);
+  vtkGetVector3Macro(Origin, double);
+  vtkSetMacro(OwnOrigin, bool);
+  vtkGetMacro(OwnOrigin, bool);
+  vtkBooleanMacro(OwnOrigin, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether the file has bare values (.raw), and what describes these: samples along each axis, their type (VTK_FLOAT
    * and so on) and number of components, whether the high byte comes first, bytes before the first value, and the
-   * distance of samples.
+   * distance of samples, unless Spacing has it.
    */
   virtual bool GetRawFile();
   vtkSetVector3Macro(RawDimensions, int);
@@ -165,6 +179,9 @@ private:
   std::vector<std::string> FileNames;
   int Level = 0;
   std::string DatasetName;
+  double Spacing[3] = { 0.0, 0.0, 0.0 };
+  double Origin[3] = { 0.0, 0.0, 0.0 };
+  bool OwnOrigin = false;
   int RawDimensions[3] = { 0, 0, 0 };
   int RawScalarType;
   int RawComponents = 1;

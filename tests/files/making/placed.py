@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that say where their samples lie, in which order, and how numbers become values: netCDF-4 by netCDF4, openPMD, EMD
+and voxel sizes by h5py, xarray's and OME's metadata in Zarr. Importing it makes the files."""
+
+import json
+
+import h5py
+import netCDF4
+import numpy as np
+import zarr
+
+from making.volumes import SIZE, note, path, values
+from making.zarrs import LATER, save_zarr
+
+PACKED = {"scale": 0.25, "offset": 5.0, "missing": [7.0]}
+EVEN = {"lon": np.linspace(10, 30, SIZE[0]), "lat": 60 - 0.5 * np.arange(SIZE[1]), "lev": 100.0 + 50 * np.arange(SIZE[2])}
+PLACE = {"origin": [10.0, 60.0, 100.0], "spacing": [1.0, -0.5, 50.0]}
+UNEVEN = 10.0 * np.arange(SIZE[2]) ** 1.5
+
+# netCDF-4: packed shorts and bytes that are unsigned, coordinates, times; another order of axes; uneven levels.
+with netCDF4.Dataset(path("packed.nc"), "w") as file:
+    file.createDimension("time", None)
+    for name, numbers in EVEN.items():
+        file.createDimension(name, len(numbers))
+        file.createVariable(name, "f4", (name,))[:] = numbers
+    file.createVariable("time", "f8", ("time",)).units = "days since 2000-01-01"
+    file["time"][:] = [0.5, 1.5, 4.5]
+    shorts = file.createVariable("t", "i2", ("time", "lev", "lat", "lon"), zlib=True, fill_value=7)
+    shorts.set_auto_maskandscale(False)
+    shorts.scale_factor, shorts.add_offset = 0.25, 5.0
+    whole = file.createVariable("u", "i1", ("time", "lev", "lat", "lon"), fill_value=np.int8(7), chunksizes=(2, 4, 5, 8))
+    whole.set_auto_maskandscale(False)
+    whole.setncattr("_Unsigned", "true")
+    whole.scale_factor, whole.add_offset = 0.25, 5.0
+    for step in range(3):
+        shorts[step] = values("<i2", step=step)
+        whole[step] = values("|i1", step=step)
+note("packed.nc", [("t", "float32"), ("u", "float32")], steps=3, times=[0.5, 1.5, 4.5], packing=PACKED, **PLACE)
+
+with netCDF4.Dataset(path("uneven.nc"), "w") as file:
+    for name, numbers in (("lon", EVEN["lon"]), ("lat", EVEN["lat"]), ("lev", UNEVEN)):
+        file.createDimension(name, len(numbers))
+        file.createVariable(name, "f8", (name,))[:] = numbers
+    numbers = values("<f4").transpose(1, 2, 0)
+    file.createVariable("t", "f4", ("lat", "lon", "lev"), chunksizes=(5, 8, 4), zlib=True)[:] = numbers
+    file.createVariable("plain", "f4", ("lat", "lon", "lev"), contiguous=True)[:] = numbers
+note(
+    "uneven.nc", [("plain", "float32"), ("t", "float32")],
+    origin=[10.0, 60.0, 0.0], spacing=[1.0, -0.5, 1.0], coordinates=[[], [], list(UNEVEN)],
+)
+
+# openPMD: axes in either order, an offset, samples in the middle of cells.
+for name, labels, order, data in (
+    ("open_c.h5", "xyz", "C", values("<f4").transpose(2, 1, 0)),
+    ("open_f.h5", "xyz", "F", values("<f4")),
+    ("open_z.h5", "zyx", "C", values("<f4")),
+):
+    with h5py.File(path(name), "w") as file:
+        file.attrs["openPMD"], file.attrs["basePath"], file.attrs["meshesPath"] = "1.1.0", "/data/%T/", "fields/"
+        rho = file.create_dataset("data/7/fields/rho", data=data, chunks=tuple(np.maximum(1, np.array(data.shape) // 3)))
+        rho.attrs["axisLabels"] = np.array([letter.encode() for letter in labels])
+        rho.attrs["geometry"], rho.attrs["dataOrder"] = np.bytes_("cartesian"), np.bytes_(order)
+        turn = 1 if labels == "xyz" else -1
+        rho.attrs["gridSpacing"], rho.attrs["gridGlobalOffset"] = [1.0, 2.0, 4.0][::turn], [0.0, 0.0, -16.0][::turn]
+        rho.attrs["gridUnitSI"], rho.attrs["position"], rho.attrs["unitSI"] = 0.5, [0.5] * 3, 1.0
+    note(name, [("data/7/fields/rho", "float32")], spacing=[0.5, 1.0, 2.0], origin=[0.25, 0.5, -7.0])
+
+# EMD, whose first axis is x; voxel sizes; axes of one sample.
+with h5py.File(path("emd.h5"), "w") as file:
+    group = file.create_group("experiment/tomogram")
+    group.attrs["emd_group_type"] = 1
+    group["data"] = values("<u2").transpose(2, 1, 0)
+    for axis, (name, count) in enumerate(zip("xyz", SIZE)):
+        group[f"dim{axis + 1}"] = 2.0 + (axis + 1) * np.arange(count)
+        group[f"dim{axis + 1}"].attrs["name"], group[f"dim{axis + 1}"].attrs["units"] = name, "[n_m]"
+note("emd.h5", [("experiment/tomogram/data", "uint16")], spacing=[1.0, 2.0, 3.0], origin=[2.0] * 3)
+with h5py.File(path("voxel_size.h5"), "w") as file:
+    file.create_dataset("f", data=values("<f4")).attrs["element_size_um"] = [4.0, 1.0, 0.5]
+note("voxel_size.h5", [("f", "float32")], spacing=[0.5, 1.0, 4.0])
+with h5py.File(path("resolution.h5"), "w") as file:
+    dataset = file.create_dataset("f", data=values("<f4")[None, None], chunks=(1, 1, 4, 5, 8))
+    dataset.attrs["resolution"], dataset.attrs["offset"] = [40, 4, 4], [400, 0, 8]
+note("resolution.h5", [("f", "float32")], spacing=[4.0, 4.0, 40.0], origin=[8.0, 0.0, 400.0])
+with h5py.File(path("ones.h5"), "w") as file:
+    file["f"] = np.stack([values("<f4", step=step) for step in range(2)])[:, None]
+note("ones.h5", [("f", "float32")], steps=2)
+
+# Zarr: half precision, xarray's packed values and coordinates.
+save_zarr("half.zarr", values("<f2"), compressor=None, chunks=(4, 5, 8))
+note("half.zarr", [("half", "float32")])
+save_zarr("half_big.zarr", values(">f2"), chunks=(4, 5, 8))
+note("half_big.zarr", [("half_big", "float32")])
+zarr.open_group(path("cf.zarr"), mode="w", **LATER)
+save_zarr("cf.zarr/t", values("<i2"), chunks=(4, 5, 8))
+for name, numbers in EVEN.items():
+    save_zarr("cf.zarr/" + name, numbers, chunks=(7,))
+attributes = {"": {"_ARRAY_DIMENSIONS": ["lev", "lat", "lon"], "scale_factor": 0.25, "add_offset": 5.0, "_FillValue": 7}}
+attributes.update({name: {"_ARRAY_DIMENSIONS": [name], "units": "degrees"} for name in EVEN})
+for name, told in attributes.items():
+    with open(path("cf.zarr/" + (name or "t") + "/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump(told, file)
+note("cf.zarr", [("t", "float32")], packing=PACKED, **PLACE)
+
+
+# OME-Zarr 0.6: coordinate systems, transformations in one another, units that differ.
+def write_ome6(name, transformation, data, systems, **more):
+    group = zarr.open_group(path(name), mode="w", **LATER)
+    save_zarr(name + "/s0", data, chunks=(1,) * (data.ndim - 3) + (4, 5, 8))
+    io = {"input": {"path": "s0"}, "output": {"name": "intrinsic"}}
+    group.attrs["ome"] = {
+        "version": "0.6",
+        "multiscales": [
+            {
+                "coordinateSystems": [{"name": "other", "axes": []}, {"name": "intrinsic", "axes": systems}],
+                "datasets": [{"path": "s0", "coordinateTransformations": [{**transformation, **io}]}],
+            }
+        ],
+    }
+    note(name, [("values", "float32")], **more)
+
+
+def scale(numbers):
+    return {"type": "scale", "scale": numbers}
+
+
+SPACE = [{"name": letter, "type": "space", "unit": "micrometer"} for letter in "zyx"]
+MIXED = [{**axis, "unit": unit} for axis, unit in zip(SPACE, ("millimeter", "nanometer", "micrometer"))]
+IN_TIME = [{"name": "t", "type": "time", "unit": "second"}, *SPACE]
+MOVED = {"type": "translation", "translation": [10, 20, 30]}
+write_ome6(
+    "six.zarr", {"type": "sequence", "transformations": [scale([4, 2, 0.5]), MOVED]}, values("<f4"), SPACE,
+    spacing=[0.5, 2.0, 4.0], origin=[30.0, 20.0, 10.0],
+)
+write_ome6(
+    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=1,
+)
+write_ome6(
+    "six_time.zarr", scale([0.5, 4, 2, 1]), np.stack([values("<f4", step=step) for step in range(3)]), IN_TIME,
+    steps=3, times=[0.0, 0.5, 1.0], spacing=[1.0, 2.0, 4.0],
+)
+write_ome6(
+    "six_mapped.zarr", {"type": "sequence", "transformations": [{"type": "mapAxis", "mapAxis": [2, 1, 0]}, scale([4, 2, 1])]},
+    values("<f4").transpose(2, 1, 0), SPACE, spacing=[1.0, 2.0, 4.0],
+)
+write_ome6(
+    "six_affine.zarr", {"type": "affine", "affine": [[4, 0, 0, 1], [0, 2, 0, 2], [0, 0, 1, 3]]}, values("<f4"), SPACE,
+    spacing=[1.0, 2.0, 4.0], origin=[3.0, 2.0, 1.0],
+)
+write_ome6(
+    "six_turned.zarr", {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}, values("<f4"), SPACE,
+    direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
+)
