@@ -80,6 +80,20 @@ if get_ranks() == 1:
 else:
     check_equal(pictures[0], numpy.load(reference), "the picture is what one rank draws")
 
+# Packed values on levels that are not evenly spaced, of which all ranks have a part.
+source = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.nc"))
+plain = ordinary(source)
+traced, _ = picture(source, "f")
+check(source.GetDataInformation().GetDataSetTypeAsString() == "vtkRectilinearGrid", "its levels are not evenly spaced")
+check(get_covered(traced).mean() > 0.05, "ball.nc: something is shown")
+expected, _ = picture(plain, "f")
+check((traced == expected).all(), "ball.nc: as from memory, bit for bit")
+check(source.GetDataInformation().GetBounds() == (-1, 1, -1, 1, -numpy.sinh(2), numpy.sinh(2)), "ball.nc: its place")
+simple.Delete(plain)
+source.Spacing, source.Origin, source.OwnOrigin = [2, 3, 4], [5, 6, 7], 1
+check(source.GetDataInformation().GetBounds() == (5, 99, 6, 123, 7, 147), "ball.nc: where the user places it")
+simple.Delete(source)
+
 # Values that an attribute declares missing are as NaN: in pictures, in the range, and for the suggested isovalue.
 def show_missing(name, array, isovalue):
     source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))

@@ -92,8 +92,9 @@ int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& e
     });
 }
 
-void ExpectGeometry(const vol::FileGeometry& geometry, const Json& entry)
+void ExpectGeometry(const vol::VolumeFile& file, const Json& entry)
 {
+  const vol::FileGeometry& geometry = file.GetGeometry();
   for (int axis = 0; axis < 3; ++axis)
   {
     EXPECT_EQ(geometry.Points[axis], entry["size"][axis].get<std::int64_t>());
@@ -101,7 +102,7 @@ void ExpectGeometry(const vol::FileGeometry& geometry, const Json& entry)
     EXPECT_DOUBLE_EQ(geometry.Origin[axis], entry.value("origin", Json({ 0.0, 0.0, 0.0 }))[axis]);
     EXPECT_DOUBLE_EQ(geometry.Spacing[axis], entry.value("spacing", Json({ 1.0, 1.0, 1.0 }))[axis]);
     const std::vector<double> none;
-    EXPECT_EQ(geometry.Coordinates[static_cast<std::size_t>(axis)],
+    EXPECT_EQ(file.GetCoordinates()[static_cast<std::size_t>(axis)],
       entry.contains("coordinates") ? entry["coordinates"][axis].get<std::vector<double>>() : none);
   }
   for (int element = 0; element < 9; ++element)
@@ -122,7 +123,7 @@ TEST(VolumeFiles, HaveTheValuesThatOtherProgramsWrote)
     try
     {
       const auto file = Open(entry);
-      ExpectGeometry(file->GetGeometry(), entry);
+      ExpectGeometry(*file, entry);
       EXPECT_EQ(file->GetSteps(), entry["steps"]);
       for (int step = 0; entry.contains("times") && step < file->GetSteps(); ++step)
       {

@@ -4,6 +4,7 @@
 import json
 
 import h5py
+import netCDF4
 import numpy as np
 from numcodecs import Blosc
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -22,6 +23,14 @@ ball = np.sqrt(x * x + y * y + z * z).astype("<f4")
 with h5py.File(path("ball.h5"), "w") as file:
     file.create_dataset("f", data=ball, chunks=(16, 10, 13), compression="gzip", shuffle=True)
 save_zarr("ball.zarr", ball, compressor=Blosc("zstd"), chunks=(9, 40, 20))
+# As climate models write it: packed, on levels that are not evenly spaced, from north to south.
+with netCDF4.Dataset(path("ball.nc"), "w") as file:
+    for name, numbers in (("lev", np.sinh(2 * np.linspace(-1, 1, edges[2]))), ("lat", np.linspace(1, -1, edges[1])), ("lon", np.linspace(-1, 1, edges[0]))):
+        file.createDimension(name, len(numbers))
+        file.createVariable(name, "f8", (name,))[:] = numbers
+    packed = file.createVariable("f", "i2", ("lev", "lat", "lon"), zlib=True, chunksizes=(16, 10, 13))
+    packed.scale_factor, packed.add_offset = 0.001, 0.5
+    packed[:] = ball
 # Missing values: NaN, and values that an attribute declares missing, of several types.
 is_missing = np.broadcast_to(x + 0.3 * y > 0.25, ball.shape)
 with h5py.File(path("missing.h5"), "w") as file:

@@ -150,3 +150,12 @@ write_ome6(
     "six_turned.zarr", {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}, values("<f4"), SPACE,
     direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
 )
+
+# OME-Zarr 0.1, which tells names of arrays alone.
+group = zarr.open_group(path("ome1.zarr"), mode="w", **LATER)
+save_zarr("ome1.zarr/0", values("<f4"), chunks=(4, 5, 8))
+save_zarr("ome1.zarr/1", values("<f4")[::2, ::2, ::2], chunks=(4, 5, 8))
+group.attrs["multiscales"] = [{"version": "0.1", "datasets": [{"path": "0"}, {"path": "1"}]}]
+note(
+    "ome1.zarr", [("values", "float32")], levels=2, level=1, size=(11, 7, 5), stride=2, spacing=[2.0] * 3, origin=[0.5] * 3,
+)

@@ -195,7 +195,7 @@ std::optional<SpaceOrder> FindSpaceOrder(const AxisNotes& notes, std::size_t fir
 }
 
 void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& notes,
-  FileGeometry& geometry, std::vector<std::string>& warnings)
+  FileGeometry& geometry, GridCoordinates& coordinates, std::vector<std::string>& warnings)
 {
   std::array<AxisNote, 3> own;
   for (std::size_t axis = 0; axis < own.size(); ++axis)
@@ -225,7 +225,7 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
     Even(note);
     geometry.Origin[axis] = note.Origin;
     geometry.Spacing[axis] = note.Spacing;
-    geometry.Coordinates[static_cast<std::size_t>(axis)] = std::move(note.Coordinates);
+    coordinates[static_cast<std::size_t>(axis)] = std::move(note.Coordinates);
   }
 }
 

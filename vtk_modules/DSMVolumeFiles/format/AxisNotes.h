@@ -38,12 +38,12 @@ using AxisNotes = std::vector<AxisNote>; ///< the slowest axis first
 /// without such a name, or with that of another, take those that are left, z first. None where two have one letter.
 std::optional<SpaceOrder> FindSpaceOrder(const AxisNotes& notes, std::size_t first);
 
-/// Sets origin and spacing of `geometry`, which is negative where positions fall, or its coordinates where these are not evenly spaced, from the notes
+/// Sets origin and spacing of `geometry`, which is negative where positions fall, or `coordinates` where these are not evenly spaced, from the notes
 /// for x, y and z (null: none). Lengths of different units become those of x's, or of the first that has one; a sentence
 /// in `warnings` says so, or which unit is not known. Throws dsm::Error, which names the file, where coordinates neither
 /// rise nor fall everywhere.
 void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& notes,
-  FileGeometry& geometry, std::vector<std::string>& warnings);
+  FileGeometry& geometry, GridCoordinates& coordinates, std::vector<std::string>& warnings);
 
 /// Takes voxel sizes and offsets of axes of space from an array's attributes, as ilastik, Fiji (element_size_um), funlib and
 /// CREMI (voxel_size or resolution, offset) write them: one number for each of these axes, or for each axis, the slowest

@@ -42,7 +42,7 @@ public:
     , IsPlaced(!options.HasSpacing())
     , GoesOn(options.GoesOn)
     , Bytes(std::make_shared<PositionedFile>(path))
-    , File(Open(path))
+    , File(Open(path, this->IsLive))
   {
     const int level = options.Level;
     this->OpenLevel(level);
@@ -220,14 +220,24 @@ private:
     this->File.Reset();
   }
 
-  static HdfHandle Open(const std::string& path)
+  /// `isLive`: set to whether another program appends to the file (single writer, multiple readers).
+  static HdfHandle Open(const std::string& path, bool& isLive)
   {
     HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
-    if (!file.IsOpen())
+    isLive = !file.IsOpen();
+    if (isLive)
     {
-      throw FileError(path,
-        "cannot be opened as HDF5. It is another kind of file, is damaged, or is open for "
-        "writing.");
+      HdfHandle live(
+        H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), &H5Fclose);
+      if (!live.IsOpen())
+      {
+        throw FileError(path,
+          "cannot be opened as HDF5. It is another kind of file, is damaged, or is open for "
+          "writing. "
+          "A writer that may be read meanwhile has to use SWMR. If the writer has ended without "
+          "closing the file, run 'h5clear -s FILE' (package hdf5-tools).");
+      }
+      return live;
     }
     return file;
   }
@@ -447,6 +457,7 @@ private:
     }
     FileGeometry place;
     place.Points = this->Geometry.Points;
+    GridCoordinates coordinates;
     std::array<const AxisNote*, 3> inSpace{};
     for (std::size_t axis = 0; axis < inSpace.size(); ++axis)
     {
@@ -456,14 +467,15 @@ private:
     std::vector<std::string> warnings;
     if (this->IsPlaced)
     {
-      PlaceAxes(this->Path, inSpace, place, warnings);
+      PlaceAxes(this->Path, inSpace, place, coordinates, warnings);
     }
     if (this->Arrays.empty())
     {
       this->Geometry = place;
+      this->Coordinates = std::move(coordinates);
       this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
     }
-    else if (!IsSamePlace(place, this->Geometry))
+    else if (!IsSamePlace(place, this->Geometry) || coordinates != this->Coordinates)
     {
       this->Warnings.push_back("has arrays at different positions. Array " + Quote(name) +
         " is shown at those of " + Quote(this->Arrays.front().Name) + ".");
@@ -497,7 +509,9 @@ private:
     Storage storage;
     storage.Packed = this->FindPacking(id.Get(), values->Type, name);
     CheckSizes(this->Path, array);
-    const bool isElsewhere = this->Origins.Add(this->Path, this->File.Get(), id.Get());
+    // The library alone knows the chunks of a file that grows.
+    const bool isElsewhere =
+      this->Origins.Add(this->Path, this->File.Get(), id.Get()) || this->IsLive;
     const bool isOrdered = axes.Order == FastestX;
     const auto cut = isOrdered ? &CutIntoRows : &CutIntoBoxes;
     array.Grid = cut(axes.Samples, array.GetSampleBytes());
@@ -662,7 +676,10 @@ private:
     const Dataset& kept = this->Kept[number];
     const bool isRead = ReadHdfBox(
       dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
-    this->Bytes->CheckUnchanged();
+    if (!this->IsLive)
+    {
+      this->Bytes->CheckUnchanged();
+    }
     this->Origins.CheckUnchanged();
     if (!isRead)
     {
@@ -677,6 +694,7 @@ private:
   std::function<bool()> GoesOn; ///< while the file is being opened
   std::shared_ptr<const PositionedFile> Bytes;
   HdfOrigins Origins;
+  bool IsLive = false; ///< another program appends to it
   HdfHandle File;
   std::optional<HdfHandle> Coarser; ///< the group of a coarser level
   hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file

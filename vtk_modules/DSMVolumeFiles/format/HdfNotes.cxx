@@ -128,6 +128,13 @@ AxisNotes ReadEmd(hid_t file, hid_t dataset, const std::vector<hsize_t>& shape)
     }
     notes.push_back(std::move(note));
   }
+  const bool areNamed = std::any_of(
+    notes.begin(), notes.end(), [](const AxisNote& note) { return !note.Name.empty(); });
+  for (std::size_t axis = 0; axis < 3 && notes.size() == 3 && !areNamed; ++axis)
+  {
+    notes[axis].Name =
+      std::string(1, "xyz"[axis]); // as programs for electron microscopes take them
+  }
   return notes;
 }
 

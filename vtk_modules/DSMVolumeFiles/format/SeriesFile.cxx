@@ -52,6 +52,7 @@ public:
     const auto first = OpenVolumeFile(this->Path, this->Options);
     this->Options.GoesOn = nullptr; // other threads open the steps, when they are needed
     this->Geometry = first->GetGeometry();
+    this->Coordinates = first->GetCoordinates();
     this->Arrays = first->GetArrays();
     this->Levels = first->GetLevels();
     this->Warnings = first->GetWarnings();
@@ -166,7 +167,8 @@ private:
             "and compression, or open it separately.");
       }
     }
-    if (!IsSamePlace(this->Geometry, file.GetGeometry()))
+    if (!IsSamePlace(this->Geometry, file.GetGeometry()) ||
+      this->Coordinates != file.GetCoordinates())
     {
       this->Refuse(
         file, "its first index, origin, spacing or direction differs. Open it separately.");

@@ -214,6 +214,12 @@ VolumeFile::VolumeFile(std::string path)
   this->Number = ++last;
 }
 
+bool VolumeFile::IsEvenlySpaced() const
+{
+  return std::all_of(this->Coordinates.begin(), this->Coordinates.end(),
+    [](const std::vector<double>& positions) { return positions.empty(); });
+}
+
 void VolumeFile::SetPlace(const OpenOptions& options)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -222,7 +228,7 @@ void VolumeFile::SetPlace(const OpenOptions& options)
     if (options.Spacing[place] != 0.0)
     {
       this->Geometry.Spacing[axis] = options.Spacing[place];
-      this->Geometry.Coordinates[place].clear();
+      this->Coordinates[place].clear();
     }
     if (options.Origin)
     {
@@ -275,10 +281,6 @@ bool IsSamePlace(const FileGeometry& a, const FileGeometry& b)
 {
   constexpr double tolerance = 1e-3;
   bool isSame = a.First == b.First && a.Points == b.Points;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    isSame = isSame && a.Coordinates[axis] == b.Coordinates[axis];
-  }
   for (int row = 0; row < 3; ++row)
   {
     double sample = 0.0; // how large it is along this axis of the world

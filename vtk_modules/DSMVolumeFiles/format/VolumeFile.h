@@ -44,18 +44,19 @@ std::string DescribeShape(const bricks::Index3& samples);
 /// `slices`: boxes of samples in what is stored as one chunk.
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
 
-/// Placement of the samples in world space, as in vtkImageData, or as in vtkRectilinearGrid.
+/// Placement of the samples in world space, as in vtkImageData. Plain.
 struct FileGeometry
 {
-  /// Positions along x, y and z, which rise or fall everywhere; where an axis has none, its positions come from origin and
-  /// spacing. Not along axes that are turned.
-  std::array<std::vector<double>, 3> Coordinates;
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Spacing[3] = { 1.0, 1.0, 1.0 };
   double Direction[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
   bricks::Index3 First{ 0 };  ///< index of the first point
   bricks::Index3 Points{ 0 }; ///< points along each axis
 };
+
+/// Positions of the samples along x, y and z, which rise or fall everywhere, as in vtkRectilinearGrid. An axis without
+/// positions has those of origin and spacing.
+using GridCoordinates = std::array<std::vector<double>, 3>;
 
 /// Returns whether two places are one, but for what numbers in texts are rounded: by less than a thousandth of a sample, at
 /// any sample.
@@ -78,6 +79,9 @@ public:
 
   const std::string& GetPath() const { return this->Path; }
   const FileGeometry& GetGeometry() const { return this->Geometry; }
+  /// Where all axes have none, the samples are evenly spaced; else the directions of the axes are the world's.
+  const GridCoordinates& GetCoordinates() const { return this->Coordinates; }
+  bool IsEvenlySpaced() const;
   /// At least one; the points' arrays have as many samples as there are points, the cells' one less along an
   /// axis of more than one point.
   const std::vector<FileArray>& GetArrays() const { return this->Arrays; }
@@ -164,6 +168,7 @@ protected:
 
   std::string Path;
   FileGeometry Geometry;
+  GridCoordinates Coordinates;
   std::vector<FileArray> Arrays;
   int Steps = 1;
   std::vector<double> Times; ///< times of the steps, or empty

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <system_error>
@@ -199,7 +200,7 @@ private:
     }
     const auto readNumbers = [this](const std::string& name)
     { return ReadZarrVector(JoinInside(this->Path, name), FileLimits::Axes); };
-    const OmeLevel found = OmeLevel::Find(this->Path, scale, static_cast<std::size_t>(level),
+    OmeLevel found = OmeLevel::Find(this->Path, scale, static_cast<std::size_t>(level),
       this->IsPlaced ? readNumbers : OmeLevel::ReadNumbers(), this->Warnings);
     const std::string folder = JoinInside(this->Path, found.Array);
     const auto data = Read(folder);
@@ -210,6 +211,12 @@ private:
           std::to_string(found.Axes.size()) + ".");
     }
     const ZarrAxes axes = ZarrAxes::Find(folder, found.Axes, data->Shape.size());
+    if (level > 0 && this->IsPlaced && !HasTransformations(scale))
+    {
+      found.Axes.resize(data->Shape.size());
+      const std::string finest = ZarrJson::GetText(this->Path, datasets.front(), "path");
+      PlaceInFinest(Read(JoinInside(this->Path, finest))->Shape, data->Shape, axes, found.Axes);
+    }
     this->LocateBy(found.Axes, axes, data->Shape);
     if (found.Direction)
     {
@@ -229,8 +236,32 @@ private:
     this->Add(folder, data, axes, getName);
   }
 
+  /// OME-Zarr 0.1 to 0.3 has none.
+  static bool HasTransformations(const Json& scale)
+  {
+    const auto hasSome = [](const Json& one)
+    { return !ZarrJson::Find(one, "coordinateTransformations").is_null(); };
+    const Json& datasets = ZarrJson::Find(scale, "datasets");
+    return hasSome(scale) || std::any_of(datasets.begin(), datasets.end(), hasSome);
+  }
+
+  /// Places the samples of a coarser level as means of the finest level's, by the shapes of both.
+  static void PlaceInFinest(const std::vector<std::int64_t>& finest,
+    const std::vector<std::int64_t>& shape, const ZarrAxes& axes, AxisNotes& notes)
+  {
+    for (int axis = 0; axis < 3 && finest.size() == shape.size(); ++axis)
+    {
+      const std::size_t place = axes.FindInSpace(shape.size(), axis);
+      const double factor = std::max(
+        1.0, std::round(static_cast<double>(finest[place]) / static_cast<double>(shape[place])));
+      notes[place].Spacing = factor;
+      notes[place].Origin = 0.5 * (factor - 1.0);
+    }
+  }
+
   /// By what the file says of the axes of an array of this shape.
-  void LocateBy(const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
+  void LocateBy(
+    const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
   {
     if (notes.size() != shape.size())
     {
@@ -243,7 +274,7 @@ private:
     }
     if (this->IsPlaced)
     {
-      PlaceAxes(this->Path, inSpace, this->Geometry, this->Warnings);
+      PlaceAxes(this->Path, inSpace, this->Geometry, this->Coordinates, this->Warnings);
     }
     if (axes.Time >= 0)
     {

@@ -14,7 +14,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace vol
@@ -394,11 +396,37 @@ private:
     H5Pset_fletcher32(creation.Get());
     ValueRanges ranges(array.Components);
     const hsize_t limitShape[2] = { ranges.All.size(), 4 };
-    return { this->File.CreateDataset("VTKHDF/" + this->GetName(array), GetHdfType(array.Type),
-               GetShape(array.Grid.Samples, array.Components), creation.Get()),
+    HdfHandle values = this->File.CreateDataset("VTKHDF/" + this->GetName(array),
+      GetHdfType(array.Type), GetShape(array.Grid.Samples, array.Components), creation.Get());
+    this->WriteMissing(values.Get(), array);
+    return { std::move(values),
       this->File.CreateDataset(index + "/ValueRanges", H5T_NATIVE_DOUBLE,
         { std::begin(limitShape), std::end(limitShape) }, H5P_DEFAULT),
       this->CreateHalos(number), 0, std::move(ranges) };
+  }
+
+  /// Which integers are missing, as netCDF has it. Of floating point numbers they are NaN.
+  void WriteMissing(hid_t dataset, const FileArray& array)
+  {
+    bricks::Dispatch(array.Type,
+      [&](auto zero)
+      {
+        using T = decltype(zero);
+        const std::pair<const char*, double> limits[] = { { "_FillValue", array.Valid.Fill },
+          { "valid_min", array.Valid.Lowest }, { "valid_max", array.Valid.Highest } };
+        for (const auto& [name, limit] : limits)
+        {
+          // A double cannot tell the greatest integer of 64 bits from the one after it.
+          const auto exact = static_cast<long double>(limit);
+          const bool fits = exact >= std::numeric_limits<T>::lowest() &&
+            exact <= static_cast<long double>(std::numeric_limits<T>::max());
+          if (std::is_integral_v<T> && fits)
+          {
+            const auto number = static_cast<T>(limit);
+            this->File.WriteAttribute(dataset, name, GetHdfType(array.Type), &number, 1);
+          }
+        }
+      });
   }
 
   /// Not open where the layout has none.

@@ -84,6 +84,12 @@ public:
         "has no step " + std::to_string(this->Step) + "; valid steps are 0 to " +
           std::to_string(this->File->GetSteps() - 1) + ".");
     }
+    if (!this->File->IsEvenlySpaced())
+    {
+      throw FileError(this->File->GetPath(),
+        "has coordinates that are not evenly spaced, which a brick file cannot have. Use --spacing "
+        "(and --origin) to place the samples evenly.");
+    }
     for (const std::size_t number : this->Numbers)
     {
       this->Arrays.push_back(this->File->GetArrays()[number]);

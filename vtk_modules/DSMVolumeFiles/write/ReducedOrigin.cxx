@@ -39,21 +39,12 @@ T ToValue(Sum<T> sum, int count)
   return static_cast<T>(mean);
 }
 
-template <class T>
-bool IsNumber(T value)
-{
-  if constexpr (std::is_floating_point_v<T>)
-  {
-    return !std::isnan(value);
-  }
-  return true;
-}
-
 /// The samples of `fineBox` and `box` are dense; both begin where the factors say.
 template <class T>
 void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& factors,
-  int components, const bricks::Box& box, T* out)
+  int components, const bricks::ValidValues& valid, const bricks::Box& box, T* out)
 {
+  const bricks::MissingTest<T> isMissing(valid);
   const bricks::Index3 has = fineBox.GetSize();
   const bricks::Index3 size = box.GetSize();
   bricks::Index3 at;
@@ -78,7 +69,7 @@ void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& fa
               {
                 const T value =
                   fine[((from.z * has.y + from.y) * has.x + from.x) * components + component];
-                if (IsNumber(value))
+                if (!isMissing(value))
                 {
                   sum += static_cast<Sum<T>>(value);
                   ++count;
@@ -86,7 +77,7 @@ void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& fa
               }
             }
           }
-          // Without any value, NaN remains.
+          // Without any value, the first one, which is missing, remains.
           *out++ = count > 0
             ? ToValue<T>(sum, count)
             : fine[((first.z * has.y + first.y) * has.x + first.x) * components + component];
@@ -197,7 +188,7 @@ void ReducedOrigin::Read(std::size_t number, const bricks::Box& box, std::byte* 
     {
       using T = decltype(zero);
       Average(reinterpret_cast<const T*>(fine.data()), fineBox, this->Factors, array.Components,
-        box, reinterpret_cast<T*>(out));
+        this->File->GetArrays()[number].Valid, box, reinterpret_cast<T*>(out));
     });
 }
 

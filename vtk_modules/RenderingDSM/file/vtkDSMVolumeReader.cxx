@@ -12,6 +12,8 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -20,6 +22,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -288,7 +291,7 @@ vol::OpenOptions vtkDSMVolumeReader::GetOptions() const
   options.Bare.BigEndian = this->RawBigEndian;
   options.Bare.HeaderBytes =
     static_cast<std::uint64_t>(std::max<vtkIdType>(0, this->RawHeaderBytes));
-  const bool isRaw = this->GetRawFile();
+  const bool isRaw = vol::IsBareFile(this->GetFileName());
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     const bool isGiven = this->Spacing[axis] != 0.0 || !isRaw;
@@ -369,6 +372,52 @@ void vtkDSMVolumeReader::TellOfRest() const
   }
 }
 
+bool vtkDSMVolumeReader::OpenIfDescribed()
+{
+  // ParaView asks before the user can enter anything.
+  const bool isDescribed =
+    *std::min_element(this->RawDimensions, this->RawDimensions + 3) >= 1 || !this->GetRawFile();
+  if (isDescribed)
+  {
+    this->Open();
+  }
+  return isDescribed;
+}
+
+int vtkDSMVolumeReader::FillOutputPortInformation(int, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
+}
+
+int vtkDSMVolumeReader::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* output)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    this->CreateOutput(output->GetInformationObject(0));
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, output);
+}
+
+void vtkDSMVolumeReader::CreateOutput(vtkInformation* information)
+{
+  bool isUneven = false;
+  // An error is reported by what comes next, RequestInformation.
+  vtkDSMErrorGuard::Try("opening", this->GetFileName(),
+    [&] { isUneven = this->OpenIfDescribed() && !this->Self->File->IsEvenlySpaced(); });
+  const int type = isUneven ? VTK_RECTILINEAR_GRID : VTK_IMAGE_DATA;
+  const vtkDataObject* const now = information->Get(vtkDataObject::DATA_OBJECT());
+  if (!now || const_cast<vtkDataObject*>(now)->GetDataObjectType() != type)
+  {
+    const auto grid = isUneven
+      ? vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkRectilinearGrid>::New())
+      : vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkImageData>::New());
+    information->Set(vtkDataObject::DATA_OBJECT(), grid);
+  }
+}
+
 int vtkDSMVolumeReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
 {
@@ -376,12 +425,8 @@ int vtkDSMVolumeReader::RequestInformation(
   const int done = this->Attempt("opening",
     [&]
     {
-      // ParaView asks before the user can enter anything.
-      const bool isWanted =
-        *std::min_element(this->RawDimensions, this->RawDimensions + 3) >= 1 || !this->GetRawFile();
-      if (isWanted)
+      if (this->OpenIfDescribed())
       {
-        this->Open();
         this->TellOfFile(information);
       }
       else
@@ -409,9 +454,12 @@ void vtkDSMVolumeReader::TellOfFile(vtkInformation* information) const
     extent[2 * axis + 1] = static_cast<int>(geometry.First[axis] + geometry.Points[axis] - 1);
   }
   information->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  information->Set(vtkDataObject::ORIGIN(), geometry.Origin, 3);
-  information->Set(vtkDataObject::SPACING(), geometry.Spacing, 3);
-  information->Set(vtkDataObject::DIRECTION(), geometry.Direction, 9);
+  if (file.IsEvenlySpaced())
+  {
+    information->Set(vtkDataObject::ORIGIN(), geometry.Origin, 3);
+    information->Set(vtkDataObject::SPACING(), geometry.Spacing, 3);
+    information->Set(vtkDataObject::DIRECTION(), geometry.Direction, 9);
+  }
   information->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   this->TellOfScalars(information);
   information->Remove(Pipeline::TIME_STEPS());
@@ -462,12 +510,10 @@ void vtkDSMVolumeReader::TellOfScalars(vtkInformation* information) const
   }
 }
 
-void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
+void vtkDSMVolumeReader::AddArrays(vtkDataSet* grid, const int extent[6], int step, bool isShare)
 {
   const int nextStep = this->Self->Advance(step);
   const auto& file = this->Self->File;
-  int extent[6];
-  image->GetExtent(extent);
   const bricks::Index3 first = file->GetGeometry().First;
   const auto& arrays = file->GetArrays();
   const vol::FileArray* const scalars =
@@ -503,14 +549,14 @@ void vtkDSMVolumeReader::AddArrays(vtkImageData* image, int step, bool isShare)
     found.emplace_back(
       &array, this->ValuesInMemory ? vtkDSMReadFileArray(*values) : vtkDSMCreateFileArray(values));
   }
-  // An image keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
+  // A grid keeps its scalars from one execution to the next: when a file cannot be read, they stay for the last
   // picture, and else they go.
-  image->GetPointData()->Initialize();
+  grid->GetPointData()->Initialize();
   for (const auto& [array, shown] : found)
   {
     vtkDataSetAttributes* attributes = array->OnCells
-      ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
-      : image->GetPointData();
+      ? static_cast<vtkDataSetAttributes*>(grid->GetCellData())
+      : grid->GetPointData();
     attributes->AddArray(shown);
     if (array->OnCells ? !attributes->GetScalars() && array->Components == 1 : array == scalars)
     {
@@ -526,21 +572,47 @@ int vtkDSMVolumeReader::RequestData(
     [&]
     {
       this->Open();
-      this->FillImage(vtkImageData::GetData(output), output->GetInformationObject(0));
+      this->FillGrid(vtkDataSet::GetData(output), output->GetInformationObject(0));
     });
 }
 
-void vtkDSMVolumeReader::FillImage(vtkImageData* image, vtkInformation* information)
+void vtkDSMVolumeReader::PlaceGrid(vtkDataSet* grid, const int extent[6]) const
+{
+  const vol::FileGeometry& geometry = this->Self->File->GetGeometry();
+  if (auto* const image = vtkImageData::SafeDownCast(grid))
+  {
+    image->SetExtent(const_cast<int*>(extent));
+    image->SetOrigin(geometry.Origin);
+    image->SetSpacing(geometry.Spacing);
+    image->SetDirectionMatrix(geometry.Direction);
+    return;
+  }
+  const vol::GridCoordinates& coordinates = this->Self->File->GetCoordinates();
+  auto* const rectilinear = vtkRectilinearGrid::SafeDownCast(grid);
+  rectilinear->SetExtent(const_cast<int*>(extent));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<double>& positions = coordinates[static_cast<std::size_t>(axis)];
+    vtkNew<vtkDoubleArray> own;
+    for (int index = extent[2 * axis]; index <= extent[2 * axis + 1]; ++index)
+    {
+      own->InsertNextValue(positions.empty()
+          ? geometry.Origin[axis] + index * geometry.Spacing[axis]
+          : positions[static_cast<std::size_t>(index - geometry.First[axis])]);
+    }
+    axis == 0     ? rectilinear->SetXCoordinates(own)
+      : axis == 1 ? rectilinear->SetYCoordinates(own)
+                  : rectilinear->SetZCoordinates(own);
+  }
+}
+
+void vtkDSMVolumeReader::FillGrid(vtkDataSet* grid, vtkInformation* information)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   int extent[6];
   information->Get(Pipeline::UPDATE_EXTENT(), extent);
-  image->SetExtent(extent);
-  const vol::FileGeometry& geometry = this->Self->File->GetGeometry();
-  image->SetOrigin(geometry.Origin);
-  image->SetSpacing(geometry.Spacing);
-  image->SetDirectionMatrix(geometry.Direction);
-  if (image->GetNumberOfPoints() == 0)
+  this->PlaceGrid(grid, extent);
+  if (grid->GetNumberOfPoints() == 0)
   {
     return;
   }
@@ -551,9 +623,9 @@ void vtkDSMVolumeReader::FillImage(vtkImageData* image, vtkInformation* informat
       ? information->Get(Pipeline::UPDATE_TIME_STEP())
       : 0.0;
     step = this->Self->FindStep(time);
-    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Self->File->GetTime(step));
+    grid->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Self->File->GetTime(step));
   }
-  this->AddArrays(image, step, IsShare(information));
+  this->AddArrays(grid, extent, step, IsShare(information));
 }
 
 void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
@@ -568,8 +640,8 @@ void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing[0] << " " << this->Spacing[1] << " "
      << this->Spacing[2] << "\n";
   os << indent << "OwnOrigin: " << this->OwnOrigin << "\n";
-  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " "
-     << this->Origin[2] << "\n";
+  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " " << this->Origin[2]
+     << "\n";
   os << indent << "RawDimensions: " << this->RawDimensions[0] << " " << this->RawDimensions[1]
      << " " << this->RawDimensions[2] << "\n";
   os << indent << "RawScalarType: " << this->RawScalarType << "\n";

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMVolumeReader
- * @brief   image data whose values stay in their file until somebody asks for them
+ * @brief   image data, or a rectilinear grid, whose values stay in their file until somebody asks for them
  *
- * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
+ * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced. Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
  * values. When it has executed, no value has been read, but for the arrays' ranges, which are found once for a file
  * and kept in the user's cache directory: the arrays of its output (vtkDSMFileArray) read what filters and mappers
  * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask
@@ -23,6 +23,7 @@
 #include <vector>     // for ivars
 
 class vtkDataArraySelection;
+class vtkDataSet;
 namespace vol
 {
 struct FileArray;
@@ -149,6 +150,9 @@ protected:
   vtkDSMVolumeReader();
   ~vtkDSMVolumeReader() override;
 
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override;
   int RequestInformation(
     vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override;
@@ -167,14 +171,20 @@ private:
   void TellOfRest() const;
   /// The extent, the place in the world, the scalars and the time steps of the open file.
   void TellOfFile(vtkInformation* information) const;
-  /// Fills the image with the requested part of the open file. Throws dsm::Error.
-  void FillImage(vtkImageData* image, vtkInformation* information);
+  /// Returns whether the file can be opened by now: what describes bare values must be there. Opens it. Throws dsm::Error.
+  bool OpenIfDescribed();
+  /// Makes the output an image or a rectilinear grid.
+  void CreateOutput(vtkInformation* information);
+  /// Sets the extent and the place of an image or a rectilinear grid.
+  void PlaceGrid(vtkDataSet* grid, const int extent[6]) const;
+  /// Fills it with the requested part of the open file. Throws dsm::Error.
+  void FillGrid(vtkDataSet* grid, vtkInformation* information);
   bool IsChosen(const vol::FileArray& array) const;
   /// The image's: the first chosen array of points that has one component, or else the first one. Null: there is none.
   const vol::FileArray* FindScalars() const;
   /// The type of the scalars: filters of images make room by it before the values are there.
   void TellOfScalars(vtkInformation* information) const;
-  void AddArrays(vtkImageData* image, int step, bool isShare);
+  void AddArrays(vtkDataSet* grid, const int extent[6], int step, bool isShare);
 
   std::vector<std::string> FileNames;
   int Level = 0;
