@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -282,7 +283,45 @@ TEST(MeshInput, PointThatDoesNotExist)
 TEST(MeshInput, CoordinatesOutOfRange)
 {
   Mesh mesh = CreateBlob(1);
-  mesh.Positions[0] = 1e25;
+  mesh.Positions[0] = 1e31;
   const std::string error = GetError({ &mesh });
-  EXPECT_NE(error.find("1e18"), std::string::npos) << error;
+  EXPECT_NE(error.find("1e30"), std::string::npos) << error;
+}
+
+/// A galaxy in centimeters: beyond what products of floats can hold.
+TEST(MeshInput, LargeCoordinatesGiveTheSameHits)
+{
+  const auto trace = [](double scale)
+  {
+    Mesh mesh = CreateBlob(2);
+    std::transform(mesh.Positions.begin(), mesh.Positions.end(), mesh.Positions.begin(),
+      [&](double position) { return (position + 3.0) * scale; });
+    std::vector<double> hits;
+    TraceAlone(mesh,
+      [&](const Tracer& tracer, const std::shared_ptr<bricks::TriangleMesh>& published)
+      {
+        const rt::MeshInstance instance(published, glm::dmat4(1.0));
+        for (int number = 0; number < 100; ++number)
+        {
+          rt::Ray ray;
+          ray.Origin =
+            scale * glm::dvec3(2.05 + 0.2 * (number % 10), 2.07 + 0.2 * (number / 10), 9.0);
+          ray.Direction = { 0.0, 0.0, -1.0 };
+          ray.Max = 20.0 * scale;
+          rt::MeshHit hit;
+          hits.push_back(tracer.Intersect(instance, ray, hit) ? hit.T / scale : -1.0);
+        }
+      });
+    return hits;
+  };
+  const std::vector<double> expected = trace(1.0);
+  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0.0);
+  for (const double scale : { 0x1p60, 0x1p66, 0x1p80, 0x1p97 })
+  {
+    const std::vector<double> found = trace(scale);
+    for (std::size_t number = 0; number < expected.size(); ++number)
+    {
+      EXPECT_NEAR(found[number], expected[number], 1e-9) << scale << " ray " << number;
+    }
+  }
 }

@@ -22,8 +22,11 @@ namespace
 
 constexpr std::size_t ChunkSize = std::size_t(1) << 16;
 
-/// Beyond this, products of coordinates leave the range of floats.
-constexpr double LargestCoordinate = 1e18;
+/// Beyond this, products of coordinates leave the range of floats; bricks have them in a larger unit.
+constexpr double LargestUnscaled = 1e18;
+
+/// The camera and the depth of VTK and OpenGL end soon after this.
+constexpr double LargestCoordinate = 1e30;
 
 /// Memory for each triangle of a rank's own piece during sorting, in bytes.
 constexpr double OwnTriangleBytes = 32.0;
@@ -64,7 +67,8 @@ TriangleMeshBuilder::TriangleMeshBuilder(std::string_view what, const TriangleSo
   this->LargestTriangles = static_cast<std::uint32_t>(
     std::clamp(1.4 * this->Settings.BrickBytes / this->EstimateBrickBytesPerTriangle(), 1.0,
       static_cast<double>(TriangleBrickHeader::LargestTriangles)));
-  this->Reader.emplace(this->Source, this->Mesh->Attributes, &this->Mesh->Origin.x);
+  this->Reader.emplace(
+    this->Source, this->Mesh->Attributes, &this->Mesh->Origin.x, this->Mesh->Scale);
   this->Cells.emplace(
     *this->Reader, this->Order, this->LargestTriangles, this->Settings.Threads, this->Messages);
   std::uint64_t kept = 0;
@@ -208,8 +212,13 @@ void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& u
     char size[32];
     std::snprintf(size, sizeof(size), "%g", farthest);
     throw dsm::Error(std::string(this->What) + ": The mesh has a coordinate of size " + size +
-      "; the maximum is 1e18. Scale the dataset or remove the point.");
+      "; the maximum is 1e30. Scale the dataset or remove the point.");
   }
+  if (farthest > LargestUnscaled)
+  {
+    this->Mesh->Scale = std::exp2(std::ceil(std::log2(farthest / LargestUnscaled)));
+  }
+  const double perUnit = 1.0 / this->Mesh->Scale;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double middle = 0.5 * lower[axis] + 0.5 * upper[axis];
@@ -222,11 +231,12 @@ void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& u
   float corner[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    corner[axis] = static_cast<float>(lower[axis] - this->Mesh->Origin[axis]);
+    corner[axis] = static_cast<float>((lower[axis] - this->Mesh->Origin[axis]) * perUnit);
     this->Mesh->Lower[axis] = corner[axis];
-    this->Mesh->Upper[axis] = static_cast<float>(upper[axis] - this->Mesh->Origin[axis]);
+    this->Mesh->Upper[axis] =
+      static_cast<float>((upper[axis] - this->Mesh->Origin[axis]) * perUnit);
   }
-  this->Order = MortonCode(corner, extent);
+  this->Order = MortonCode(corner, extent * perUnit);
 }
 
 std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::CreateRecordSource() const

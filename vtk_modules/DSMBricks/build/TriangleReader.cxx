@@ -46,11 +46,12 @@ bool HasArea(const float corners[9])
 
 } // namespace
 
-TriangleReader::TriangleReader(
-  const TriangleSource& source, const MeshAttributes& attributes, const double origin[3])
+TriangleReader::TriangleReader(const TriangleSource& source, const MeshAttributes& attributes,
+  const double origin[3], double scale)
   : Source(source)
   , Attributes(attributes)
   , Layout(attributes)
+  , InverseScale(1.0 / scale)
 {
   std::copy_n(origin, 3, this->Origin);
 }
@@ -98,7 +99,8 @@ bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int o
   for (int word = 0; word < 9; ++word)
   {
     // Adding zero makes zeros positive.
-    read[word] = static_cast<float>(positions[word] - this->Origin[word % 3]) + 0.0f;
+    read[word] =
+      static_cast<float>((positions[word] - this->Origin[word % 3]) * this->InverseScale) + 0.0f;
   }
   int first = 0;
   for (int corner = 1; corner < 3; ++corner)

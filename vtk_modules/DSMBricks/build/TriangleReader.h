@@ -15,9 +15,9 @@ namespace bricks
 class TriangleReader final : public RecordReader
 {
 public:
-  /// `origin` is the mesh's, the same on every rank.
-  TriangleReader(
-    const TriangleSource& source, const MeshAttributes& attributes, const double origin[3]);
+  /// `origin` and `scale` are those of TriangleMesh.
+  TriangleReader(const TriangleSource& source, const MeshAttributes& attributes,
+    const double origin[3], double scale = 1.0);
 
   const char* GetNames() const override { return "triangles"; }
   std::uint64_t GetCount() const override { return this->Source.GetTriangleCount(); }
@@ -46,6 +46,7 @@ private:
   MeshAttributes Attributes;
   TriangleRecord Layout;
   double Origin[3];
+  double InverseScale;
 };
 
 } // namespace bricks

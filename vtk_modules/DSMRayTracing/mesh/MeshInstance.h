@@ -34,11 +34,12 @@ public:
   MeshInstance(std::shared_ptr<const bricks::TriangleMesh> mesh, const glm::dmat4& meshToWorld)
     : Shape(std::move(mesh))
     , MeshToWorld(meshToWorld)
+    , BricksToWorld(this->Shape->Scale * glm::dmat3(meshToWorld))
     , WorldOrigin(meshToWorld * glm::dvec4(this->Shape->Origin, 1.0))
-    , WorldToMesh(glm::inverse(glm::dmat3(meshToWorld)))
-    , NormalToWorld(glm::transpose(this->WorldToMesh))
-    , AxisLengths(
-        glm::length(meshToWorld[0]), glm::length(meshToWorld[1]), glm::length(meshToWorld[2]))
+    , WorldToBricks(glm::inverse(this->BricksToWorld))
+    , NormalToWorld(glm::transpose(glm::inverse(glm::dmat3(meshToWorld))))
+    , AxisLengths(glm::length(this->BricksToWorld[0]), glm::length(this->BricksToWorld[1]),
+        glm::length(this->BricksToWorld[2]))
   {
   }
 
@@ -60,20 +61,20 @@ public:
   bool GetMeshRay(const Ray& ray, MeshRay& line) const
   {
     // Subtracting first keeps the digits of a small mesh far from the world's origin.
-    const glm::dvec3 origin = this->WorldToMesh * (ray.Origin - this->WorldOrigin);
-    const glm::dvec3 direction = this->WorldToMesh * ray.Direction;
+    const glm::dvec3 origin = this->WorldToBricks * (ray.Origin - this->WorldOrigin);
+    const glm::dvec3 direction = this->WorldToBricks * ray.Direction;
     return line.Set(
       &origin.x, &direction.x, ray.Min, ray.Max, &this->Shape->Lower.x, &this->Shape->Upper.x);
   }
 
   /// The steps of GetMeshRay: world, less this point, times this matrix.
   const glm::dvec3& GetWorldOrigin() const { return this->WorldOrigin; }
-  const glm::dmat3& GetWorldToMesh() const { return this->WorldToMesh; }
+  const glm::dmat3& GetWorldToBricks() const { return this->WorldToBricks; }
 
-  /// World place of a corner as bricks have it: relative to the mesh's origin.
+  /// World place of a corner as bricks have it.
   glm::dvec3 Place(const glm::vec3& corner) const
   {
-    return this->WorldOrigin + glm::dmat3(this->MeshToWorld) * glm::dvec3(corner);
+    return this->WorldOrigin + this->BricksToWorld * glm::dvec3(corner);
   }
 
   /// Turns a normal of the mesh's space, of any length, to the world.
@@ -85,10 +86,11 @@ private:
 
   std::shared_ptr<const bricks::TriangleMesh> Shape;
   glm::dmat4 MeshToWorld;
-  glm::dvec3 WorldOrigin; ///< origin of the positions in bricks
-  glm::dmat3 WorldToMesh;
+  glm::dmat3 BricksToWorld; ///< for positions in bricks, less their origin
+  glm::dvec3 WorldOrigin;   ///< origin of the positions in bricks
+  glm::dmat3 WorldToBricks;
   glm::dmat3 NormalToWorld;
-  glm::dvec3 AxisLengths; ///< in the world, of units of the mesh's axes
+  glm::dvec3 AxisLengths; ///< in the world, of the bricks' units along the mesh's axes
 };
 
 } // namespace rt

@@ -93,7 +93,7 @@ private:
   Vector Turn(int row, const Vector vector[3]) const
   {
     const Tag tag;
-    const glm::dmat3& matrix = this->Instance.GetWorldToMesh();
+    const glm::dmat3& matrix = this->Instance.GetWorldToBricks();
     const Vector x = hn::Mul(hn::Set(tag, matrix[0][row]), vector[0]);
     const Vector y = hn::Mul(hn::Set(tag, matrix[1][row]), vector[1]);
     const Vector z = hn::Mul(hn::Set(tag, matrix[2][row]), vector[2]);
