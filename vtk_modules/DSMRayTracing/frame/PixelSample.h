@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace rt
@@ -32,19 +33,22 @@ struct PixelSample
   std::int32_t Object = -1;
 
   /// The same surface by surface, front to back: its depth, and what it contributes to the color.
-  /// The last one stands for all behind it.
+  /// Where there are more surfaces than layers, a layer stands for several: see AddLayer.
   int Layers = 0;
   float LayerDepths[MaxLayers];
   glm::vec4 LayerColors[MaxLayers];
 
-  /// `isMedium`: a surface behind it that is better seen gives the sample its depth.
+  /// Surfaces must be added front to back. Where there is no room, the two neighbors become one that make the least
+  /// difference to what is drawn between them: the one that contributes less moves to the depth of the other (as nodes
+  /// of the visibility function in Salvi, Montgomery, Lefohn, Adaptive Transparency, 2011). `isMedium`: a surface behind
+  /// it that is better seen gives the sample its depth.
   void AddLayer(const glm::vec4& color, float depth, bool isMedium = false)
   {
     const bool isNearest = this->Layers == 0;
     this->Cover += color.w;
     if (this->Layers == MaxLayers)
     {
-      this->LayerColors[MaxLayers - 1] += color;
+      this->AddMerged(color, depth);
       return;
     }
     this->Depth = isNearest || (this->IsFaint && this->Cover >= 0.5f) ? depth : this->Depth;
@@ -54,6 +58,34 @@ struct PixelSample
   }
 
 private:
+  void AddMerged(const glm::vec4& color, float depth)
+  {
+    const auto getColor = [&](int layer) -> const glm::vec4&
+    { return layer < MaxLayers ? this->LayerColors[layer] : color; };
+    const auto getDepth = [&](int layer)
+    { return layer < MaxLayers ? this->LayerDepths[layer] : depth; };
+    const auto getDifference = [&](int layer)
+    {
+      return (getDepth(layer + 1) - getDepth(layer)) *
+        std::min(getColor(layer).w, getColor(layer + 1).w);
+    };
+    int best = MaxLayers - 1;
+    for (int layer = MaxLayers - 2; layer >= 0; --layer)
+    {
+      best = getDifference(layer) < getDifference(best) ? layer : best;
+    }
+    if (getColor(best + 1).w > getColor(best).w)
+    {
+      this->LayerDepths[best] = getDepth(best + 1);
+    }
+    this->LayerColors[best] += getColor(best + 1);
+    for (int layer = best + 1; layer < MaxLayers; ++layer)
+    {
+      this->LayerColors[layer] = getColor(layer + 1);
+      this->LayerDepths[layer] = getDepth(layer + 1);
+    }
+  }
+
   float Cover = 0.0f;   ///< by all layers
   bool IsFaint = false; ///< Depth is that of a medium that covers less than half
 };
