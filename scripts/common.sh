@@ -14,12 +14,14 @@ packages=(
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
+  liblz4-dev liblzma-dev libbz2-dev
   libx11-dev libxi-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )
 # And those that the tests need besides.
 test_packages=(libgtest-dev clang-format doxygen iproute2 python3-numpy python3-mpi4py
-  python3-h5py python3-zarr python3-netcdf4 teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial)
+  python3-h5py python3-zarr python3-netcdf4 teem-apps hdf5-filter-plugin hdf5-filter-plugin-blosc-serial
+  hdf5-filter-plugin-zfp-serial)
 
 # Prints what ParaView's development files need besides and do not demand: from Debian 14 on, ParaView uses
 # the VTK that is packaged for itself; and the panel needs the Qt that ParaView has. Nothing where the package

@@ -248,6 +248,50 @@ TEST(ChunkCodec, ShuffledElementsOfEveryWidthComeBack)
   }
 }
 
+template <class Decoded, class Encoded>
+std::vector<Decoded> DecodeNumbers(
+  const char* codec, const vol::CodecParameters& with, const std::vector<Encoded>& encoded)
+{
+  vol::ByteBuffer stored(encoded.size() * sizeof(Encoded));
+  std::memcpy(stored.data(), encoded.data(), stored.size());
+  std::vector<Decoded> found(encoded.size());
+  vol::ChunkCodec({ vol::CodecStep(vol::FindCodec(codec), with) })
+    .Decode(std::move(stored), 0, reinterpret_cast<std::byte*>(found.data()),
+      found.size() * sizeof(Decoded));
+  return found;
+}
+
+/// The numbers are numcodecs'.
+TEST(ChunkCodec, NumbersAreConvertedAsNumPyDoesIt)
+{
+  using Type = bricks::ScalarType;
+  const auto scaled = [](Type decoded, Type encoded, double scale, double offset) {
+    return vol::CodecParameters{ 1, { decoded }, { encoded }, scale, offset };
+  };
+  const char* const fixed = "fixedscaleoffset";
+  EXPECT_EQ((DecodeNumbers<float, std::int16_t>(
+              fixed, scaled(Type::Float32, Type::Int16, 3, 0.1), { 1, 2, -7 })),
+    (std::vector<float>{ 0x1.bbbbbcp-2f, 0x1.888888p-1f, -0x1.1ddddep+1f }));
+  EXPECT_EQ((DecodeNumbers<float, float>(
+              fixed, scaled(Type::Float32, Type::Float32, 3, 0.1), { 1, 2, -7 })),
+    (std::vector<float>{ 0x1.bbbbbcp-2f, 0x1.88888ap-1f, -0x1.1ddddep+1f }));
+  EXPECT_EQ((DecodeNumbers<std::int32_t, std::uint8_t>(
+              fixed, scaled(Type::Int32, Type::UInt8, 0.3, -1000.7), { 1, 2, 200 })),
+    (std::vector<std::int32_t>{ -997, -994, -334 }));
+  EXPECT_EQ((DecodeNumbers<std::uint8_t, std::int8_t>(
+              "delta", { 1, { Type::UInt8 }, { Type::Int8 } }, { 100, 100, 100, -5 })),
+    (std::vector<std::uint8_t>{ 100, 200, 44, 39 }));
+  EXPECT_EQ((DecodeNumbers<float, float>(
+              "delta", { 1, { Type::Float32 }, { Type::Float32 } }, { 1e8f, 1, 1, -5 })),
+    (std::vector<float>{ 1e8f, 1e8f, 1e8f, 99999992.0f }));
+  EXPECT_EQ((DecodeNumbers<float, double>(
+              "delta", { 1, { Type::Float32 }, { Type::Float64 } }, { 1e8, 1, 1, -5 })),
+    (std::vector<float>{ 1e8f, 1e8f, 1e8f, 1e8f }));
+  EXPECT_EQ((DecodeNumbers<std::int16_t, double>(
+              "astype", { 1, { Type::Int16 }, { Type::Float64 } }, { -1.9, 2.9, 32769.0, 1e300 })),
+    (std::vector<std::int16_t>{ -1, 2, -32767, 0 }));
+}
+
 /// What does not shrink grows, by what the compression needs for itself.
 TEST(ChunkCodec, WhatIsPackedAgainComesBack)
 {

@@ -311,6 +311,57 @@ TEST(HostileZarr, ChunksThatUnpackToAnotherSizeAreRefused)
   EXPECT_THROW(sums.Decode(vol::ByteBuffer(3), 0, out.data(), out.size()), dsm::Error);
 }
 
+/// A few bytes that say they become many, and what no such compressor writes.
+TEST(HostileZarr, ChunksOfOtherCompressorsAreRefused)
+{
+  const std::string xz = std::string("\xfd") + "7zXZ" + std::string(1, '\0');
+  // Properties, a dictionary of 4 GiB, an unknown size.
+  const std::string alone = std::string("\x5d") + std::string(12, '\xff');
+  const Json raw = Json::array({ { { "id", 0x21 }, { "dict_size", 0xffffffffu } } });
+  const struct
+  {
+    const char* Name;
+    Json Compressor;
+    std::string Chunk;
+    const char* Words;
+  } cases[] = { { "lz4", { { "id", "lz4" } }, std::string(4, '\xff') + "abcd", "LZ4" },
+    { "lz4short", { { "id", "lz4" } }, "abc", "LZ4" },
+    { "lz4block", { { "id", "lz4" } }, std::string("\0\1\0\0\xff\xff\xff", 7), "LZ4" },
+    { "bz2", { { "id", "bz2" } }, "BZh91AY&SY and so on", "bzip2" },
+    { "lzma", { { "id", "lzma" } }, xz + "and so on, for some bytes", "LZMA" },
+    { "alone", { { "id", "lzma" }, { "format", 2 } }, alone + "abcdefgh", "bytes to be unpacked" },
+    { "raw", { { "id", "lzma" }, { "format", 3 }, { "filters", raw } }, "\x01\x7f\xff", "LZMA" } };
+  for (const auto& one : cases)
+  {
+    SCOPED_TRACE(one.Name);
+    const fs::path folder = Write2(one.Name, { { "compressor", one.Compressor } });
+    WriteText(folder / "0.0.0", one.Chunk + std::string(16, 'x'));
+    ExpectRefusal(folder, { "0.0.0", one.Words });
+  }
+}
+
+/// They name the codec, the member, and what there is instead.
+TEST(HostileZarr, ParametersOfCodecsAreChecked)
+{
+  const auto refuse = [](const Json& codec, std::initializer_list<const char*> words) {
+    ExpectRefusal(Write2("codec", { { "filters", { codec } } }), words);
+  };
+  refuse({ { "id", "pcodec" } }, { "'pcodec'", "fixedscaleoffset, fletcher32", "zarr-python" });
+  refuse({ { "id", "delta" }, { "dtype", "<c8" } }, { "'delta'", "'<c8'", "'dtype'" });
+  refuse({ { "id", "delta" }, { "dtype", 4 } }, { "'delta'", "no text", "'dtype'" });
+  refuse({ { "id", "fixedscaleoffset" }, { "scale", "10" } }, { "'fixedscaleoffset'", "'scale'" });
+  refuse({ { "id", "shuffle" }, { "elementsize", 1e9 } }, { "'shuffle'", "'elementsize'" });
+  refuse({ { "id", "lzma" }, { "format", 4 } }, { "'lzma'", "'format'" });
+  refuse({ { "id", "lzma" }, { "format", 3 } }, { "'lzma'", "'filters'" });
+  const Json unknown = Json::array({ { { "id", 77 } } });
+  refuse({ { "id", "lzma" }, { "format", 3 }, { "filters", unknown } }, { "'lzma'", "'id'" });
+  // Numbers of another size than the array's.
+  const Json widens = { { "id", "astype" }, { "decode_dtype", "<f8" }, { "encode_dtype", "<f4" } };
+  const fs::path wide = Write2("wide", { { "filters", { widens } } });
+  WriteText(wide / "0.0.0", std::string(130, 'x'));
+  ExpectRefusal(wide, { "0.0.0", "numbers" });
+}
+
 /// Most chunks of a large array may be nowhere.
 TEST(HostileZarr, ALargeArrayWithoutChunksIsRight)
 {

@@ -34,7 +34,14 @@ struct CodecInput
     {
       const std::vector<vol::Codec>& codecs = vol::GetCodecs();
       const vol::Codec* const codec = &codecs[take() % codecs.size()];
-      input.Steps.emplace_back(codec, std::max<std::size_t>(1, take()));
+      const std::size_t width = take();
+      vol::CodecParameters with{ std::max<std::size_t>(1, width) };
+      // Of codecs that convert numbers, and of LZMA.
+      with.Decoded = { static_cast<bricks::ScalarType>(width % 10), width > 200 };
+      with.Encoded = { static_cast<bricks::ScalarType>(width / 10 % 10), width > 150 };
+      with.Scale = static_cast<double>(width % 7);
+      with.Numbers = { width % 4, 0x21, 4096, 3, 0, 2, 1, 0 };
+      input.Steps.emplace_back(codec, with);
     }
     input.Skipped = take();
     input.SampleBytes = take();
@@ -51,7 +58,7 @@ struct CodecInput
     for (const vol::CodecStep& step : this->Steps)
     {
       bytes.push_back(static_cast<std::uint8_t>(step.What - vol::GetCodecs().data()));
-      bytes.push_back(static_cast<std::uint8_t>(step.Width));
+      bytes.push_back(static_cast<std::uint8_t>(step.With.Width));
     }
     bytes.push_back(static_cast<std::uint8_t>(this->Skipped));
     bytes.push_back(static_cast<std::uint8_t>(this->SampleBytes & 0xff));

@@ -39,7 +39,10 @@ void WriteCodecs(const fs::path& folder)
     { { "shuffle", 8 } }, { { "shuffle", 3 } }, { { "deflate" } }, { { "zstd" } },
     { { "fletcher32" } }, { { "shuffle", 4 }, { "deflate" }, { "fletcher32" } },
     { { "swap", 2 }, { "shuffle", 2 }, { "zstd" } }, { { "deflate" }, { "zstd" } }, { { "blosc" } },
-    { { "zstd" }, { "crc32c" } } };
+    { { "zstd" }, { "crc32c" } }, { { "lz4" } }, { { "HDF5's lz4" } }, { { "bzip2" } },
+    { { "lzma", 1 } }, { { "lzma", 2 } }, { { "lzma", 3 } }, { { "rounded" } },
+    { { "astype", 38 } }, { { "delta", 8 }, { "delta", 192 } },
+    { { "fixedscaleoffset", 89 }, { "zstd" } } };
   int number = 0;
   for (const std::vector<vol::CodecStep>& steps : all)
   {

@@ -2,13 +2,14 @@
 """HDF5 by h5py: layouts, filters, types, VTK's images and time steps. Importing it makes the files."""
 
 import os
+import zlib
 
 import h5py
 import numpy as np
 
 from making.volumes import SIZE, create_image, note, path, values
 
-BZIP2, BLOSC = 307, 32001
+BZIP2, BLOSC, LZ4, ZFP = 307, 32001, 32004, 32013
 
 # HDF5: layouts, filters and types.
 plain = {
@@ -23,8 +24,13 @@ plain = {
         {"chunks": (4, 5, 7), "compression": "gzip", "shuffle": True, "fletcher32": True},
         "<i8",
     ),
-    # No filter of ours: the library reads it, with a plugin of Debian's.
     "bzip2": ({"chunks": (4, 5, 8), "compression": BZIP2}, "<f4"),
+    # In blocks of 512 bytes; without the number the whole chunk is a block.
+    "lz4": ({"chunks": (4, 5, 8), "compression": LZ4, "compression_opts": (512,)}, "<f4"),
+    "lz4_whole": ({"chunks": (4, 5, 8), "compression": LZ4}, ">u2"),
+    # No filters of ours: the library reads them, zfp (without loss) with a plugin of Debian's.
+    "scale_offset": ({"chunks": (4, 5, 8), "scaleoffset": 0}, "<i4"),
+    "zfp": ({"chunks": (4, 5, 8), "compression": ZFP, "compression_opts": (5, 0, 0, 0, 0, 0)}, "<f4"),
     "signed_char": ({}, "|i1"),
     "blosc": ({"chunks": (4, 5, 8), "compression": BLOSC}, "<f4"),
 }
@@ -33,6 +39,18 @@ for name, (options, dtype) in plain.items():
         file.create_dataset("deep/er/f", data=values(dtype), **options)
         file["other"] = np.arange(5)
     note(name + ".h5", [("deep/er/f", np.dtype(dtype).name)])
+
+# Rounded values, which need not be undone, whether or not there is a plugin of the filter.
+for name, rounding in (("bit_groom", 32022), ("granular_bit_round", 32023)):
+    with h5py.File(path(name + ".h5"), "w") as file:
+        creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        creation.set_chunk(SIZE[::-1])
+        creation.set_filter(rounding, h5py.h5z.FLAG_OPTIONAL, (3, 4, 0, 0, 0))
+        creation.set_deflate(1)
+        whole = h5py.h5s.create_simple(SIZE[::-1])
+        dataset = h5py.h5d.create(file.id, b"f", h5py.h5t.IEEE_F32LE, whole, creation)
+        dataset.write_direct_chunk((0, 0, 0), zlib.compress(values("<f4").tobytes()))
+    note(name + ".h5", [("f", "float32")])
 
 # Large ones that are not compressed: of slices a few are there.
 os.makedirs(path("large"))

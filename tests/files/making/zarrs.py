@@ -7,7 +7,7 @@ import struct
 
 import numpy as np
 import zarr
-from numcodecs import Blosc, GZip, Shuffle, Zlib, Zstd
+from numcodecs import BZ2, LZ4, LZMA, AsType, BitRound, Blosc, Delta, FixedScaleOffset, GZip, Quantize, Shuffle, Zlib, Zstd
 
 from making.hdf import LARGE
 from making.volumes import SIZE, note, path, values
@@ -33,6 +33,13 @@ compressors = {
     "zlib": Zlib(),
     "gzip": GZip(),
     "zstd": Zstd(),
+    "lz4": LZ4(),
+    "bz2": BZ2(),
+    "lzma": LZMA(),
+    "lzma_alone": LZMA(format=2, preset=1),
+    # As Python's lzma names them: differences in 4 bytes, then LZMA2 or LZMA1.
+    "lzma_raw": LZMA(format=3, filters=[{"id": 3, "dist": 4}, {"id": 0x21, "preset": 1, "lc": 2}]),
+    "lzma_raw1": LZMA(format=3, filters=[{"id": 0x4000000000000001, "dict_size": 65536, "lp": 1, "lc": 1}]),
 }
 for name, compressor in compressors.items():
     for dtype, separator in (("<f4", "."), (">u2", "/")):
@@ -41,6 +48,18 @@ for name, compressor in compressors.items():
         note(file, [(file[: -len(".zarr")], np.dtype(dtype).name)])
 save_zarr("shuffled.zarr", values("<f8"), compressor=Zlib(), chunks=(4, 5, 8), filters=[Shuffle(8)])
 note("shuffled.zarr", [("shuffled", "float64")])
+# Filters that make other numbers of the values, or nothing but rounded ones.
+filters = {
+    "bitround": ("<f4", [BitRound(8)]),
+    "quantize": ("<f8", [Quantize(1, "<f8", "<f4")]),
+    "delta": (">i4", [Delta(">i4", "|i1")]),
+    "delta_float": ("<f8", [Delta("<f8", "<f4")]),
+    "astype": ("<f4", [AsType(">u2", "<f4")]),
+    "fixedscaleoffset": (">f4", [FixedScaleOffset(offset=-3, scale=10, dtype=">f4", astype=">i2"), Delta(">i2")]),
+}
+for name, (dtype, of_name) in filters.items():
+    save_zarr(f"{name}.zarr", values(dtype), compressor=Zstd(), chunks=(4, 5, 8), filters=of_name)
+    note(f"{name}.zarr", [(name, np.dtype(dtype).name)])
 # What is packed and does not shrink is packed again.
 for name, inner, outer in (("packed_zlib", Zlib(0), Zstd()), ("packed_gzip", GZip(0), Blosc("lz4"))):
     save_zarr(f"{name}.zarr", values("|u1"), compressor=outer, chunks=(4, 5, 8), filters=[inner])
@@ -188,7 +207,8 @@ note(
 
 
 # Zarr, version 3, which zarr 2 cannot write: by hand, after the specification.
-def write_version3(name, codecs, chunk, shard=None, orders=(), components=1):
+def write_version3(name, codecs, chunk, shard=None, orders=(), components=1, numbers=(), endian="little"):
+    """numbers, codecs: names, or codecs of numcodecs, which get its names; numbers come before the bytes."""
     data = values("<f4", components)
     os.makedirs(path(name))
     encode = {
@@ -196,9 +216,17 @@ def write_version3(name, codecs, chunk, shard=None, orders=(), components=1):
         "zstd": lambda raw: bytes(Zstd().encode(raw)),
         "blosc": lambda raw: bytes(Blosc("lz4").encode(raw)),
     }
+
+    def describe(codec):
+        if isinstance(codec, str):
+            return {"name": codec, "configuration": {}}
+        configuration = codec.get_config()
+        return {"name": "numcodecs." + configuration.pop("id"), "configuration": configuration}
+
     inner = [{"name": "transpose", "configuration": {"order": order}} for order in orders]
-    inner += [{"name": "bytes", "configuration": {"endian": "little"}}]
-    inner += [{"name": codec, "configuration": {}} for codec in codecs]
+    inner += [describe(codec) for codec in numbers]
+    inner += [{"name": "bytes", "configuration": {"endian": endian}}]
+    inner += [describe(codec) for codec in codecs]
     outer = inner
     if shard:
         index_codecs = [{"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"}]
@@ -235,9 +263,11 @@ def write_version3(name, codecs, chunk, shard=None, orders=(), components=1):
         whole[tuple(slice(0, n) for n in part.shape)] = part
         for order in orders:
             whole = whole.transpose(order)
-        raw = whole.tobytes()
+        for codec in numbers:
+            whole = codec.encode(whole)
+        raw = whole.astype(whole.dtype.newbyteorder("<" if endian == "little" else ">")).tobytes()
         for codec in codecs:
-            raw = encode[codec](raw)
+            raw = encode[codec](raw) if isinstance(codec, str) else bytes(codec.encode(np.frombuffer(raw, "u1")))
         return raw
 
     outer_shape = shard or chunk
@@ -278,6 +308,13 @@ write_version3("three_sharded.zarr", ["blosc"], [2, 5, 4], [4, 10, 8])
 write_version3("three_sharded_gzip.zarr", ["gzip"], [4, 5, 8], [4, 5, 8])
 write_version3("three_components.zarr", ["zstd"], [4, 5, 8, 2], components=2)
 write_version3("three_components_sharded.zarr", ["blosc"], [2, 5, 4, 2], [4, 10, 8, 2], components=2)
+# Codecs of version 2, as zarr-python 3 names them.
+for codec in (Zlib(), LZ4(), BZ2(), LZMA(), Blosc("zstd")):
+    write_version3(f"three_{codec.codec_id}.zarr", [codec], [4, 5, 8])
+write_version3("three_shuffle.zarr", [Shuffle(4), "zstd"], [2, 5, 4], [4, 10, 8])
+write_version3("three_bitround.zarr", [Zstd()], [4, 5, 8], numbers=[BitRound(8)], endian="big")
+scaled = [FixedScaleOffset(offset=-3, scale=10, dtype="<f4", astype="<i2"), Delta("<i2", "<i4")]
+write_version3("three_fixedscaleoffset.zarr", [GZip()], [4, 5, 8], numbers=scaled, endian="big")
 # Axes that are transposed, and again: to the order of C, or of Fortran.
 turn, around = [2, 1, 0], [1, 2, 0]
 for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [turn, [0, 1, 2]]), ("around", [around] * 3)):

@@ -6,7 +6,7 @@ import os
 import struct
 
 import numpy as np
-from numcodecs import Blosc, GZip, Shuffle, Zlib, Zstd
+from numcodecs import GZip, Zlib, Zstd, get_codec
 
 from seeds.common import values, write
 
@@ -32,16 +32,17 @@ def fletcher32(raw):
 
 def encode(raw, codec):
     name = codec.get("id") or codec["name"]
-    if name == "shuffle":
-        return bytes(Shuffle(codec["elementsize"]).encode(np.frombuffer(raw, "u1")))
     if name == "crc32c":
         return raw + struct.pack("<I", crc32c(raw))
     if name == "fletcher32":
         return raw + struct.pack("<I", fletcher32(raw))
     if name in ("bytes", "transpose"):
         return raw
-    compressor = {"zlib": Zlib(), "gzip": GZip(), "zstd": Zstd(), "blosc": Blosc(codec.get("cname", "lz4"))}[name]
-    return bytes(compressor.encode(raw))
+    if name in ("zlib", "gzip", "zstd"):
+        return bytes({"zlib": Zlib(), "gzip": GZip(), "zstd": Zstd()}[name].encode(raw))
+    configuration = {**codec.get("configuration", codec), "id": name.replace("numcodecs.", "")}
+    kind = configuration.get("dtype", "f4" if name == "bitround" else "u1")
+    return np.ascontiguousarray(get_codec(configuration).encode(np.frombuffer(raw, kind).copy())).tobytes()
 
 
 def encode_all(raw, codecs):

@@ -15,7 +15,7 @@ Codec MakeBloscCodec();
 namespace
 {
 
-ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
+ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 {
   std::size_t count = 0;
   if (blosc_cbuffer_validate(stored.data(), stored.size(), &count) != 0 || count > most)
@@ -37,7 +37,7 @@ ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
 Codec MakeBloscCodec()
 {
   Codec codec{ "blosc", { "blosc" } };
-  codec.HdfFilter = 32001; // https://github.com/HDFGroup/hdf5_plugins
+  codec.HdfFilters = { 32001 }; // https://github.com/HDFGroup/hdf5_plugins
   codec.IsCompressor = true;
   codec.MostGrowth = 1 << 15; // it may contain Zstandard
 #ifdef DSM_HAS_BLOSC

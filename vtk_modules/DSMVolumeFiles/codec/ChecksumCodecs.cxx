@@ -16,7 +16,7 @@ namespace
 using Sum = std::uint32_t (*)(const std::byte*, std::size_t);
 
 template <Sum sum>
-ByteBuffer Check(ByteBuffer stored, std::size_t, std::size_t)
+ByteBuffer Check(ByteBuffer stored, const CodecParameters&, std::size_t)
 {
   if (stored.size() < sizeof(std::uint32_t))
   {
@@ -33,7 +33,7 @@ ByteBuffer Check(ByteBuffer stored, std::size_t, std::size_t)
 }
 
 template <Sum sum>
-ByteBuffer Add(ByteBuffer samples, std::size_t)
+ByteBuffer Add(ByteBuffer samples, const CodecParameters&)
 {
   CodecBytes::AddNumber(samples, sum(samples.data(), samples.size()));
   return samples;
@@ -54,7 +54,7 @@ Codec MakeCrc32cCodec()
 Codec MakeFletcher32Codec()
 {
   Codec codec{ "fletcher32", { "fletcher32" } };
-  codec.HdfFilter = 3;
+  codec.HdfFilters = { 3 };
   codec.AddedBytes = sizeof(std::uint32_t);
   codec.Decode = &Check<GetFletcher32>;
   codec.Encode = &Add<GetFletcher32>;

@@ -35,14 +35,19 @@ bool MayHaveHalo(const CodecStep& step)
   return step.What->AddHalo != nullptr;
 }
 
-/// As many bytes as a step makes at most of so many, which may not shrink; the greatest number where that is more.
+/// As many bytes as a step makes at most of so many, which may not shrink unless it converts them; the greatest number where that is more.
 std::uint64_t GetMost(const CodecStep& step, std::uint64_t bytes)
 {
   constexpr std::uint64_t header = 1024;
   constexpr std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
-  if (bytes > all / 2 - header)
+  if (bytes > all / 16 - header)
   {
     return all;
+  }
+  if (step.What->ConvertsNumbers)
+  {
+    return (bytes / bricks::GetBytes(step.With.Decoded.Type) + 1) *
+      bricks::GetBytes(step.With.Encoded.Type);
   }
   // More than zlib's bound for any of its settings, the largest: an eighth, a 64th, and its header.
   return Compresses(step) ? bytes + bytes / 4 + header : bytes + step.What->AddedBytes;
@@ -50,7 +55,7 @@ std::uint64_t GetMost(const CodecStep& step, std::uint64_t bytes)
 
 ByteBuffer Undo(const CodecStep& step, ByteBuffer bytes, std::uint64_t most)
 {
-  return step.What->Decode(std::move(bytes), step.Width, static_cast<std::size_t>(most));
+  return step.What->Decode(std::move(bytes), step.With, static_cast<std::size_t>(most));
 }
 
 ByteBuffer Do(const CodecStep& step, ByteBuffer bytes)
@@ -59,19 +64,19 @@ ByteBuffer Do(const CodecStep& step, ByteBuffer bytes)
   {
     Refuse("this compression or checksum can be read but not written.");
   }
-  return step.What->Encode(std::move(bytes), step.Width);
+  return step.What->Encode(std::move(bytes), step.With);
 }
 
 } // namespace
 
 CodecStep::CodecStep(std::string_view name, std::size_t width)
-  : CodecStep(FindCodec(name), width)
+  : CodecStep(FindCodec(name), CodecParameters{ width })
 {
 }
 
-CodecStep::CodecStep(const Codec* what, std::size_t width)
+CodecStep::CodecStep(const Codec* what, CodecParameters with)
   : What(what)
-  , Width(width)
+  , With(std::move(with))
 {
   if (!what)
   {
@@ -93,7 +98,7 @@ ChunkCodec::ChunkCodec(std::vector<CodecStep> steps)
   }
   for (const CodecStep& step : this->Steps)
   {
-    if (step.Width == 0)
+    if (step.With.Width == 0)
     {
       Refuse("a filter of its chunks has elements of 0 bytes.");
     }

@@ -19,10 +19,10 @@ struct CodecStep
   /// The name must be a codec's.
   CodecStep(std::string_view name, std::size_t width = 1);
   /// Not null.
-  explicit CodecStep(const Codec* what, std::size_t width = 1);
+  explicit CodecStep(const Codec* what, CodecParameters with = {});
 
   const Codec* What;
-  std::size_t Width; ///< bytes of an element
+  CodecParameters With;
 };
 
 /// Turns the bytes of a chunk as a file has them into samples, and back. Any thread.

@@ -2,15 +2,24 @@
 #include "DSMVolumeFiles/codec/Codec.h"
 
 #include <algorithm>
+#include <set>
 
 namespace vol
 {
 
 // One line for each file; a static library keeps what is named here.
+Codec MakeAsTypeCodec();
 Codec MakeBloscCodec();
+Codec MakeBzip2Codec();
 Codec MakeCrc32cCodec();
 Codec MakeDeflateCodec();
+Codec MakeDeltaCodec();
+Codec MakeFixedScaleOffsetCodec();
 Codec MakeFletcher32Codec();
+Codec MakeHdfLz4Codec();
+Codec MakeLz4Codec();
+Codec MakeLzmaCodec();
+Codec MakeRoundedCodec();
 Codec MakeShuffleCodec();
 Codec MakeSwapCodec();
 Codec MakeZstdCodec();
@@ -18,7 +27,9 @@ Codec MakeZstdCodec();
 const std::vector<Codec>& GetCodecs()
 {
   static const std::vector<Codec> codecs{ MakeSwapCodec(), MakeShuffleCodec(), MakeDeflateCodec(),
-    MakeBloscCodec(), MakeZstdCodec(), MakeFletcher32Codec(), MakeCrc32cCodec() };
+    MakeBloscCodec(), MakeZstdCodec(), MakeFletcher32Codec(), MakeCrc32cCodec(), MakeBzip2Codec(),
+    MakeLz4Codec(), MakeHdfLz4Codec(), MakeLzmaCodec(), MakeRoundedCodec(), MakeAsTypeCodec(),
+    MakeDeltaCodec(), MakeFixedScaleOffsetCodec() };
   return codecs;
 }
 
@@ -48,7 +59,23 @@ const Codec* FindZarrCodec(std::string_view name)
 
 const Codec* FindHdfCodec(int filter)
 {
-  return Find([filter](const Codec& codec) { return filter > 0 && codec.HdfFilter == filter; });
+  return Find([filter](const Codec& codec)
+    { return std::count(codec.HdfFilters.begin(), codec.HdfFilters.end(), filter) > 0; });
+}
+
+std::string ListZarrCodecs()
+{
+  std::set<std::string_view> names;
+  for (const Codec& codec : GetCodecs())
+  {
+    names.insert(codec.ZarrNames.begin(), codec.ZarrNames.end());
+  }
+  std::string list;
+  for (const std::string_view name : names)
+  {
+    list.append(list.empty() ? "" : ", ").append(name);
+  }
+  return list;
 }
 
 } // namespace vol

@@ -2,25 +2,49 @@
 #ifndef vol_Codec_h
 #define vol_Codec_h
 
+#include "DSMBricks/base/ScalarType.h"
 #include "DSMVolumeFiles/base/ByteBuffer.h"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace vol
 {
 
+/// How an element is stored.
+struct ElementType
+{
+  bricks::ScalarType Type = bricks::ScalarType::UInt8;
+  bool Swapped = false; ///< the other byte order than the machine's
+};
+
+/// What a codec must know to encode or decode a chunk. Plain.
+struct CodecParameters
+{
+  std::size_t Width = 1; ///< bytes of an element
+  // Types before and after encoding, scale and offset, of codecs that convert numbers.
+  ElementType Decoded = {};
+  ElementType Encoded = {};
+  double Scale = 1.0;
+  double Offset = 0.0;
+  /// Further numbers, whose meaning the codec's file says.
+  std::vector<std::uint64_t> Numbers = {};
+};
+
 /// A way to encode the bytes of a chunk. Each has a file of its own (ZstdCodec.cxx, ...) and a line in Codec.cxx; nothing
 /// else lists them. The functions are for any thread.
 struct Codec
 {
   std::string_view Name;
-  /// Zarr's names of it, where it needs nothing else to be known.
+  /// Zarr's names of it: the "id" of version 2. Version 3 has them as they are, or after "numcodecs.".
   std::vector<std::string_view> ZarrNames = {};
-  int HdfFilter = 0; ///< HDF5's number; 0: it has none
+  std::vector<int> HdfFilters = {}; ///< HDF5's numbers of it
 
   /// Package to install if this build lacks the library; empty if it has the library.
   std::string_view LackingPackage = {};
@@ -28,16 +52,22 @@ struct Codec
   bool IsCompressor = false;
   /// Upper bound for the ratio of decoded to encoded bytes.
   std::uint64_t MostGrowth = 1;
+  /// Each element becomes one of CodecParameters::Encoded.
+  bool ConvertsNumbers = false;
   /// Bytes that a codec that does not compress adds.
   std::size_t AddedBytes = 0;
   /// Each sample stays where it is, with its bytes in whatever order.
   bool KeepsPlaces = false;
 
-  /// Returns at most `most` bytes. `width`: of an element. Throws dsm::Error, which begins with "its", when the bytes are
-  /// damaged.
-  ByteBuffer (*Decode)(ByteBuffer stored, std::size_t width, std::size_t most) = nullptr;
+  /// Returns the parameters that Zarr's metadata have. `configuration`: in version 2 the object with the "id";
+  /// `decoded`: the type of the array where the metadata do not name one. Throws dsm::Error, which names the member that
+  /// is invalid. Null: it has none.
+  CodecParameters (*ParseZarr)(
+    const nlohmann::json& configuration, const ElementType& decoded) = nullptr;
+  /// Returns at most `most` bytes. Throws dsm::Error, which begins with "its", when the bytes are damaged.
+  ByteBuffer (*Decode)(ByteBuffer stored, const CodecParameters& with, std::size_t most) = nullptr;
   /// Null: it is only read.
-  ByteBuffer (*Encode)(ByteBuffer samples, std::size_t width) = nullptr;
+  ByteBuffer (*Encode)(ByteBuffer samples, const CodecParameters& with) = nullptr;
 
   /// Adds the encoded halo behind an encoded chunk, where other programs do not look. Null: there is no such place.
   void (*AddHalo)(ByteBuffer& stored, const ByteBuffer& halo) = nullptr;
@@ -51,6 +81,8 @@ const std::vector<Codec>& GetCodecs();
 const Codec* FindCodec(std::string_view name);
 const Codec* FindZarrCodec(std::string_view name);
 const Codec* FindHdfCodec(int filter);
+/// Returns Zarr's names of all codecs, for messages: "blosc, bz2, ...".
+std::string ListZarrCodecs();
 
 } // namespace vol
 

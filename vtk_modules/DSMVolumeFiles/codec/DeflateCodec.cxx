@@ -29,7 +29,7 @@ constexpr std::uint64_t MostGrowth = 1032;
 using namespace CodecBytes;
 
 #ifdef DSM_HAS_LIBDEFLATE
-ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
+ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 {
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> machine(
     libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
@@ -53,7 +53,7 @@ ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
   return bytes;
 }
 #else
-ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
+ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 {
   constexpr int zlibOrGzip = 15 + 32;
   const auto toCount = [](std::size_t size)
@@ -79,7 +79,7 @@ ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
 }
 #endif
 
-ByteBuffer Encode(ByteBuffer samples, std::size_t)
+ByteBuffer Encode(ByteBuffer samples, const CodecParameters&)
 {
   // Fast, and hardly larger than what higher levels make of scientific data.
   constexpr int level = 3;
@@ -120,7 +120,7 @@ std::optional<ByteBuffer> FindHalo(const ByteBuffer& stored)
 Codec MakeDeflateCodec()
 {
   Codec codec{ "deflate", { "zlib", "gzip" } };
-  codec.HdfFilter = 1;
+  codec.HdfFilters = { 1 };
   codec.IsCompressor = true;
   codec.MostGrowth = MostGrowth;
 #ifdef DSM_HAS_ZLIB

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/codec/Codec.h"
+#include "DSMVolumeFiles/codec/CodecJson.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -12,8 +13,9 @@ Codec MakeShuffleCodec();
 namespace
 {
 
-ByteBuffer Shuffle(ByteBuffer samples, std::size_t width)
+ByteBuffer Shuffle(ByteBuffer samples, const CodecParameters& with)
 {
+  const std::size_t width = with.Width;
   const std::size_t count = samples.size() / width;
   ByteBuffer bytes(samples.size());
   for (std::size_t byte = 0; byte < width; ++byte)
@@ -29,8 +31,9 @@ ByteBuffer Shuffle(ByteBuffer samples, std::size_t width)
   return bytes;
 }
 
-ByteBuffer Unshuffle(ByteBuffer stored, std::size_t width, std::size_t)
+ByteBuffer Unshuffle(ByteBuffer stored, const CodecParameters& with, std::size_t)
 {
+  const std::size_t width = with.Width;
   ByteBuffer bytes(stored.size());
   const auto put = [from = stored.data(), to = bytes.data(), all = stored.size()](auto elementBytes)
   {
@@ -63,13 +66,23 @@ ByteBuffer Unshuffle(ByteBuffer stored, std::size_t width, std::size_t)
   return bytes;
 }
 
+/// As numcodecs has it.
+CodecParameters ParseZarr(const nlohmann::json& configuration, const ElementType&)
+{
+  constexpr std::int64_t usual = 4;
+  constexpr std::int64_t most = 256;
+  const std::int64_t width = CodecJson::GetInteger(configuration, "elementsize", usual, 0, most);
+  return { static_cast<std::size_t>(std::max<std::int64_t>(1, width)) };
+}
+
 } // namespace
 
 /// The first bytes of all elements of a width, then the second ones, and so on.
 Codec MakeShuffleCodec()
 {
-  Codec codec{ "shuffle" };
-  codec.HdfFilter = 2;
+  Codec codec{ "shuffle", { "shuffle" } };
+  codec.HdfFilters = { 2 };
+  codec.ParseZarr = &ParseZarr;
   codec.Decode = &Unshuffle;
   codec.Encode = &Shuffle;
   return codec;

@@ -12,8 +12,9 @@ Codec MakeSwapCodec();
 namespace
 {
 
-ByteBuffer Swap(ByteBuffer bytes, std::size_t width)
+ByteBuffer Swap(ByteBuffer bytes, const CodecParameters& with)
 {
+  const std::size_t width = with.Width;
   for (std::size_t at = 0; at + width <= bytes.size(); at += width)
   {
     std::reverse(bytes.data() + at, bytes.data() + at + width);
@@ -28,8 +29,8 @@ Codec MakeSwapCodec()
 {
   Codec codec{ "swap" };
   codec.KeepsPlaces = true;
-  codec.Decode = [](ByteBuffer stored, std::size_t width, std::size_t)
-  { return Swap(std::move(stored), width); };
+  codec.Decode = [](ByteBuffer stored, const CodecParameters& with, std::size_t)
+  { return Swap(std::move(stored), with); };
   codec.Encode = &Swap;
   return codec;
 }

@@ -24,7 +24,7 @@ constexpr std::uint64_t MostGrowth = 1 << 15;
 #ifdef DSM_HAS_ZSTD
 using namespace CodecBytes;
 
-ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
+ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 {
   ByteBuffer bytes(GetRoom(stored, MostGrowth, most));
   const std::size_t count =
@@ -38,7 +38,7 @@ ByteBuffer Decode(ByteBuffer stored, std::size_t, std::size_t most)
   return bytes;
 }
 
-ByteBuffer Encode(ByteBuffer samples, std::size_t)
+ByteBuffer Encode(ByteBuffer samples, const CodecParameters&)
 {
   constexpr int level = 3;
   ByteBuffer bytes(ZSTD_compressBound(samples.size()));
@@ -79,7 +79,7 @@ std::optional<ByteBuffer> FindHalo(const ByteBuffer& stored)
 Codec MakeZstdCodec()
 {
   Codec codec{ "zstd", { "zstd" } };
-  codec.HdfFilter = 32015; // https://github.com/HDFGroup/hdf5_plugins
+  codec.HdfFilters = { 32015 }; // https://github.com/HDFGroup/hdf5_plugins
   codec.IsCompressor = true;
   codec.MostGrowth = MostGrowth;
 #ifdef DSM_HAS_ZSTD

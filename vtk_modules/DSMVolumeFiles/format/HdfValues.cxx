@@ -128,14 +128,43 @@ bool FindHdfSteps(hid_t properties, std::vector<CodecStep>& steps)
     const H5Z_filter_t filter = H5Pget_filter2(properties, static_cast<unsigned>(index), &flags,
       &parameterCount, parameters, 0, nullptr, &config);
     const Codec* const codec = FindHdfCodec(filter);
-    if (!codec)
+    // The library may have a plugin for what this build lacks.
+    if (!codec || (!codec->LackingPackage.empty() && H5Zfilter_avail(filter) > 0))
     {
       return false;
     }
-    steps.emplace_back(codec, filter == H5Z_FILTER_SHUFFLE ? std::max(1u, parameters[0]) : 1u);
+    steps.emplace_back(
+      codec, CodecParameters{ filter == H5Z_FILTER_SHUFFLE ? std::max(1u, parameters[0]) : 1u });
   }
   return true;
 }
+
+namespace
+{
+
+/// How to get the plugin of a filter of https://github.com/HDFGroup/hdf5_plugins.
+std::string DescribePlugin(H5Z_filter_t filter)
+{
+  switch (filter)
+  {
+    case 32008:
+      return "Install the package bitshuffle and name its folder bitshuffle/plugin in "
+             "HDF5_PLUGIN_PATH";
+    case 32013:
+      return "Install the package hdf5-filter-plugin-zfp-serial";
+    case 32017: // SZ
+    case 32018: // FCIDECOMP
+    case 32024: // SZ3
+    case 32026: // Blosc2
+    case 32028: // SPERR
+      return "Install the Python package hdf5plugin and name its folder hdf5plugin.PLUGIN_PATH in "
+             "HDF5_PLUGIN_PATH";
+    default:
+      return "Install its plugin in a directory of HDF5_PLUGIN_PATH";
+  }
+}
+
+} // namespace
 
 std::string FindLackingHdfFilter(hid_t dataset)
 {
@@ -150,9 +179,8 @@ std::string FindLackingHdfFilter(hid_t dataset)
       &flags, &parameterCount, nullptr, sizeof(name) - 1, name, nullptr);
     if (H5Zfilter_avail(filter) <= 0)
     {
-      return "the HDF5 filter " + std::to_string(filter) + " (" + name +
-        ") is not available. Install its plugin in a directory of HDF5_PLUGIN_PATH, or convert the "
-        "file to deflate: 'h5repack -f GZIP=3'.";
+      return "the HDF5 filter " + std::to_string(filter) + " (" + name + ") is not available. " +
+        DescribePlugin(filter) + ", or convert the file to deflate: 'h5repack -f GZIP=3'.";
     }
   }
   return {};

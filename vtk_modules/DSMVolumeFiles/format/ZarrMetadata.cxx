@@ -52,6 +52,7 @@ PackedValues ParseType2(const std::string& folder, const std::string& text, bool
   {
     RefuseType(folder, text);
   }
+  isSwapped = isSwapped && bricks::GetBytes(known->second) > 1;
   return PackedValues(known->second);
 }
 
@@ -191,8 +192,13 @@ std::vector<std::byte> ParseFill(
     });
 }
 
-CodecStep ParseCodec(const std::string& folder, const std::string& name)
+/// `decoded`: the type of the values that the codec gets, where its configuration does not name one.
+CodecStep ParseCodec(const std::string& folder, const std::string& fullName,
+  const Json& configuration, const ElementType& decoded)
 {
+  // As zarr-python 3 names those of version 2.
+  constexpr std::string_view space = "numcodecs.";
+  const std::string name = fullName.rfind(space, 0) == 0 ? fullName.substr(space.size()) : fullName;
   if (name == "sharding_indexed")
   {
     Refuse(folder, "its shards are nested or combined with other codecs, which is not supported.");
@@ -201,10 +207,18 @@ CodecStep ParseCodec(const std::string& folder, const std::string& name)
   if (!codec)
   {
     Refuse(folder,
-      "its filter or compressor " + Quote(name) +
-        " is not supported. Supported are blosc, gzip, zlib, zstd and crc32c.");
+      "its filter or compressor " + Quote(fullName) + " is not supported. Supported are " +
+        ListZarrCodecs() + ". Write the array again with one of these, as zarr-python does.");
   }
-  return CodecStep(codec);
+  try
+  {
+    return CodecStep(
+      codec, codec->ParseZarr ? codec->ParseZarr(configuration, decoded) : CodecParameters());
+  }
+  catch (const dsm::Error& error)
+  {
+    Refuse(folder, "its codec " + Quote(fullName) + " " + error.what());
+  }
 }
 
 /// Between the indices in a chunk's name. With any other, two chunks may have one name, or lie outside of the folder.
@@ -243,27 +257,6 @@ ChunkCodec MakeCodec(const std::string& folder, std::vector<CodecStep> steps)
   }
 }
 
-CodecStep ParseFilter2(const std::string& folder, const Json& filter)
-{
-  const std::string name = ZarrJson::GetText(folder, filter, "id");
-  if (name != "shuffle")
-  {
-    return ParseCodec(folder, name);
-  }
-  constexpr std::int64_t most = 256;
-  const Json& size = ZarrJson::Find(filter, "elementsize");
-  const auto width = size.is_null() ? std::optional<std::int64_t>(4)
-    : size.is_number()              ? ToInteger(size.get<double>(), 0, most)
-                                    : std::nullopt;
-  if (!width)
-  {
-    Refuse(folder,
-      "its filter 'shuffle' has an invalid 'elementsize'; 0 to " + std::to_string(most) +
-        " are valid.");
-  }
-  return { "shuffle", static_cast<std::size_t>(std::max<std::int64_t>(1, *width)) };
-}
-
 ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
 {
   ZarrMetadata data;
@@ -280,21 +273,26 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
   }
   bool isSwapped = false;
   data.Packed = ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), isSwapped);
-  if (isSwapped && bricks::GetBytes(data.Packed.GetStored()) > 1)
+  if (isSwapped)
   {
     steps.push_back({ "swap", bricks::GetBytes(data.Packed.GetStored()) });
   }
   data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Packed);
   const Json& filters = ZarrJson::Find(json, "filters");
   CheckLimit(folder, "filters", filters.size(), FileLimits::Filters);
+  const auto parse = [&](const Json& codec)
+  {
+    return ParseCodec(folder, ZarrJson::GetText(folder, codec, "id"), codec,
+      { data.Packed.GetStored(), isSwapped });
+  };
   for (const Json& filter : filters)
   {
-    steps.push_back(ParseFilter2(folder, filter));
+    steps.push_back(parse(filter));
   }
   const Json& compressor = ZarrJson::Find(json, "compressor");
   if (!compressor.is_null())
   {
-    steps.push_back(ParseCodec(folder, ZarrJson::GetText(folder, compressor, "id")));
+    steps.push_back(parse(compressor));
   }
   data.Codec = MakeCodec(folder, std::move(steps));
   return data;
@@ -337,7 +335,7 @@ void Transpose(const std::string& folder, const Json& configuration, std::vector
 /// Parses the codecs of version 3, except for sharding, of an array with so many axes.
 /// `fortranOrder`: set to whether consecutive transpositions result in a reversal of all axes.
 std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codecs,
-  std::size_t width, std::size_t count, bool& fortranOrder)
+  bricks::ScalarType type, std::size_t count, bool& fortranOrder)
 {
   if (!codecs.is_array())
   {
@@ -353,6 +351,7 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
     const Json& configuration = GetConfiguration(codec);
     if (name == "bytes")
     {
+      const std::size_t width = bricks::GetBytes(type);
       if (ZarrJson::GetText(folder, configuration, "endian") == "big" && width > 1)
       {
         steps.push_back({ "swap", width });
@@ -364,7 +363,14 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
     }
     else
     {
-      steps.push_back(ParseCodec(folder, name));
+      steps.push_back(ParseCodec(folder, name, configuration, { type }));
+      if (steps.back().What->ConvertsNumbers)
+      {
+        // Of numbers, not bytes: only "bytes" gives them an order.
+        CodecParameters& with = steps.back().With;
+        with.Decoded.Swapped = with.Encoded.Swapped = false;
+        type = with.Encoded.Type;
+      }
     }
   }
   fortranOrder = count > 1 && std::is_sorted(axes.rbegin(), axes.rend());
@@ -409,7 +415,7 @@ ZarrMetadata::Sharding ParseSharding(
   bool isTransposed = false;
   // Its last axis has an offset and a length.
   const std::vector<CodecStep> steps =
-    ParseCodecs3(folder, ZarrJson::Find(configuration, "index_codecs"), sizeof(std::uint64_t),
+    ParseCodecs3(folder, ZarrJson::Find(configuration, "index_codecs"), bricks::ScalarType::UInt64,
       data.Shape.size() + 1, isTransposed);
   if (isTransposed)
   {
@@ -460,8 +466,7 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
     codecs = &ZarrJson::Find(configuration, "codecs");
   }
   data.Codec = MakeCodec(folder,
-    ParseCodecs3(folder, *codecs, bricks::GetBytes(data.Packed.GetStored()), data.Shape.size(),
-      data.FortranOrder));
+    ParseCodecs3(folder, *codecs, data.Packed.GetStored(), data.Shape.size(), data.FortranOrder));
   return data;
 }
 

@@ -391,7 +391,8 @@ private:
       case Compression::Zstd:
         H5Pset_shuffle(creation.Get());
         // The library itself need not have it; chunks are written as they are.
-        H5Pset_filter(creation.Get(), FindCodec("zstd")->HdfFilter, H5Z_FLAG_OPTIONAL, 0, nullptr);
+        H5Pset_filter(
+          creation.Get(), FindCodec("zstd")->HdfFilters.front(), H5Z_FLAG_OPTIONAL, 0, nullptr);
     }
     H5Pset_fletcher32(creation.Get());
     ValueRanges ranges(array.Components);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_CodecJson_h
+#define vol_CodecJson_h
+
+#include "DSMVolumeFiles/codec/Codec.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <string_view>
+
+/// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec 'x' ".
+namespace vol::CodecJson
+{
+
+/// Null where there is none.
+const nlohmann::json& Find(const nlohmann::json& configuration, const char* name);
+
+/// Returns `usual` where there is none, or null. Throws where it is not an integer in [least, most].
+std::int64_t GetInteger(const nlohmann::json& configuration, const char* name, std::int64_t usual,
+  std::int64_t least, std::int64_t most);
+
+/// Throws where there is no finite number.
+double GetNumber(const nlohmann::json& configuration, const char* name);
+
+/// Returns `usual` where there is none, or null. Throws for types that bricks::ScalarType does not have.
+ElementType GetType(
+  const nlohmann::json& configuration, const char* name, const ElementType& usual);
+
+} // namespace vol::CodecJson
+
+#endif
