@@ -6,9 +6,13 @@
 
 #include <clocale>
 #include <cstdlib>
+#include <fstream>
+#include <functional>
 #include <iostream>
+#include <iterator>
 #include <locale>
 #include <string>
+#include <tuple>
 
 #include <sys/stat.h>
 
@@ -215,15 +219,124 @@ TEST(HostileHeaders, NamesWithPercentSignsWork)
     WriteText(nrrd, GetNrrd("data file: " + std::string(name) + "\n"));
     EXPECT_EQ(ReadWatched(nrrd), "");
   }
-  for (const char* name : { "c%03d.raw 1 3 1", "%d 1 2", "LIST 2" })
-  {
-    ExpectRefusal(
-      WriteMeta("pattern", "ElementDataFile = " + std::string(name)), { "several files" });
-    ExpectRefusal(WriteNrrd("pattern", "data file: " + std::string(name)), { "several files" });
-  }
   const fs::path lost = folder / "lost.mhd";
   WriteText(lost, GetMeta("ElementDataFile = 50%.raw\n"));
   EXPECT_NE(ReadWatched(lost).find("50%.raw"), std::string::npos);
+}
+
+/// One that is missing or too short is named, and so are lists and numbers that do not fit the sizes.
+TEST(HostileHeaders, SeveralFilesAreChecked)
+{
+  const fs::path folder = MakeFolder("several");
+  const auto meta = [&](const std::string& place)
+  {
+    WriteText(folder / "a.mhd", GetMeta("ElementDataFile = " + place + "\n"));
+    return folder / "a.mhd";
+  };
+  const auto nrrd = [&](const std::string& place)
+  {
+    WriteText(folder / "a.nhdr", GetNrrd("data file: " + place + "\n"));
+    return folder / "a.nhdr";
+  };
+  for (int number = 1; number <= 4; ++number)
+  {
+    WriteText(folder / ("s" + std::to_string(number)), Values.substr(0, 16));
+  }
+  for (const auto& open : { std::function<fs::path(const std::string&)>(meta), { nrrd } })
+  {
+    for (const char* right : { "s%d 1 4 1", "s%d 1 4", "s%d 4 1 -1", "LIST\ns1\ns2\ns3\ns4",
+           "LIST 2\ns1\ns2\ns3\n s4 \n", "LIST 3\ns1\ns2\ns3\ns4", "s%1d 1 4 1 2" })
+    {
+      EXPECT_EQ(ReadWatched(open(right)), "") << right;
+    }
+    for (const char* wrong : { "s%d 1 3 1", "s%d 1 5 1", "s%d 1 4 2", "LIST\ns1\ns2\ns3", "LIST",
+           "LIST 1\ns1\ns2\ns3\ns4", "LIST 3\ns1\ns2\ns3" })
+    {
+      ExpectRefusal(open(wrong), { "files instead of" });
+    }
+    ExpectRefusal(open("s%d 1 4 0"), { "its numbers do not lead" });
+    ExpectRefusal(open("s%d 1 4 -1"), { "its numbers do not lead" });
+    ExpectRefusal(open("s%d 0 2000000000 1"), { "files of values" });
+    ExpectRefusal(open("s%d 1 4 1 4"), { "4 axes of 3" });
+    ExpectRefusal(open("LIST 0\ns1"), { "0 axes of 3" });
+    EXPECT_NE(ReadWatched(open("s%d 2 5 1")).find("several/s5'"), std::string::npos);
+    EXPECT_NE(ReadWatched(open("s%900d 1 4 1")).find(" 1' cannot"), std::string::npos);
+    EXPECT_NE(ReadWatched(open("s%s 1 4 1")).find("s%s 1 4 1'"), std::string::npos);
+    EXPECT_NE(ReadWatched(open("s%d%d 1 4 1")).find("s%d%d 1 4 1'"), std::string::npos);
+    WriteText(folder / "s3", Values.substr(0, 15));
+    const std::string text = ReadWatched(open("s%d 1 4 1"));
+    EXPECT_NE(text.find("several/s3' has 15 bytes, but 16"), std::string::npos) << text;
+    WriteText(folder / "s3", Values.substr(0, 16));
+  }
+  std::string many = "LIST";
+  for (int number = 0; number < 70000; ++number)
+  {
+    many += "\ns1";
+  }
+  ExpectRefusal(meta(many), { "files of values" });
+  ExpectRefusal(nrrd(many), { "files of values" });
+}
+
+/// Headers of one size, and compressed values of another one.
+TEST(HostileHeaders, CompressedValuesOfAnotherSizeAreRefused)
+{
+  const fs::path folder = MakeFolder("packed");
+  const auto write = [&](const std::string& packed, const std::string& sizes, const char* more = "")
+  {
+    const bool isBzip2 = fs::path(packed).extension() == ".bz2";
+    const fs::path path = folder / "a.nhdr";
+    WriteText(path,
+      "NRRD0005\ntype: uchar\ndimension: 3\nsizes: " + sizes + "\nencoding: " +
+        (isBzip2 ? "bzip2" : "gzip") + "\n" + more + "data file: " + packed + "\n");
+    return path;
+  };
+  for (const char* name : { "zeros.gz", "zeros.bz2" })
+  {
+    const std::string file = name;
+    fs::copy_file(fs::path(DSM_TEST_FILES) / name, folder / name);
+    const auto refused = [&](const fs::path& path) { return ReadWatched(path); };
+    // 256 KiB of zeros, in a few bytes.
+    EXPECT_EQ(refused(write(file, "64 64 64")), "");
+    EXPECT_EQ(refused(write(file, "4 4 4", "byte skip: -1\n")), "");
+    EXPECT_EQ(refused(write(file, "64 64 63", "byte skip: 4096\n")), "");
+    for (const auto& [sizes, more, words] :
+      { std::tuple("64 64 63", "", "more than the 258048"), std::tuple("4 4 4", "", "more than"),
+        std::tuple("64 64 64", "byte skip: 1\n", "262144 bytes instead of the 262145"),
+        std::tuple("64 64 65", "byte skip: -1\n", "262144 bytes instead of the 266240"),
+        std::tuple("64 64 64", "byte skip: 9000000000000000\n", "262144 bytes instead of"),
+        std::tuple("1000000 1000000 1000000", "", name) })
+    {
+      const std::string text = refused(write(file, sizes, more));
+      EXPECT_NE(text.find(words), std::string::npos) << text;
+      EXPECT_NE(text.find(folder.string()), std::string::npos) << text;
+    }
+    // What ends early, or in other bytes.
+    std::ifstream in(folder / name, std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(in)), {});
+    for (std::size_t bytes = 0; bytes < whole.size(); bytes += bytes < 30 ? 1 : 99)
+    {
+      WriteText(folder / ("cut-" + file), whole.substr(0, bytes));
+      const std::string text = refused(write("cut-" + file, "64 64 64"));
+      EXPECT_NE(text.find("cut-" + file), std::string::npos) << bytes << text;
+      std::string other = whole;
+      other[bytes] = static_cast<char>(other[bytes] ^ 0x55);
+      WriteText(folder / ("cut-" + file), other);
+      refused(write("cut-" + file, "64 64 64")); // names and times in a gzip header do not count
+    }
+    WriteText(folder / ("cut-" + file), whole + "and what nobody needs");
+    EXPECT_EQ(refused(write("cut-" + file, "64 64 64")), "");
+    EXPECT_NE(refused(write("cut-" + file, "64 64 65")).find("cut-" + file), std::string::npos);
+  }
+  // As many bytes as could be that large, on the disk as well.
+  WriteSparse(folder / "huge.bz2", std::uintmax_t(1) << 30);
+  EXPECT_NE(
+    ReadWatched(write("huge.bz2", "1000000 1000000 1000")).find("MiB free"), std::string::npos);
+  const fs::path meta = folder / "a.mhd";
+  WriteText(meta,
+    GetMeta("CompressedData = True\nCompressedDataSize = 99999\nElementDataFile = zeros.gz\n"));
+  EXPECT_NE(ReadWatched(meta).find("99999 of compressed values"), std::string::npos);
+  WriteText(meta, GetMeta("CompressedData = True\nHeaderSize = -1\nElementDataFile = zeros.gz\n"));
+  ExpectRefusal(meta, { "CompressedDataSize" });
 }
 
 /// Names are bytes.

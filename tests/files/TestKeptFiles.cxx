@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files in the user's cache directory are used only if they are what the program kept there.
+#include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -277,4 +279,64 @@ TEST(TestValueRanges, OfFloatsMayBeInfiniteOrNone)
   EXPECT_TRUE(vectors.IsValid(bricks::ScalarType::UInt8));
   vectors.All.back().Least = -1.0;
   EXPECT_FALSE(vectors.IsValid(bricks::ScalarType::UInt8));
+}
+
+/// Compressed values have a copy, which is made once, and again where it is damaged.
+TEST_F(TestKeptFiles, ACopyOfUnpackedValuesIsMadeOnce)
+{
+  const fs::path packed = this->Folder / "packed.nrrd";
+  fs::copy_file(fs::path(DSM_TEST_FILES) / "gzip.nrrd", packed);
+  const auto read = [&](const std::function<bool()>& goesOn = nullptr)
+  {
+    vol::OpenOptions options;
+    options.GoesOn = goesOn;
+    const auto file = vol::OpenVolumeFile(packed.string(), options);
+    const vol::FileArray& array = file->GetArrays().front();
+    const bricks::Index3 chunk(0);
+    Bytes bytes(
+      static_cast<std::size_t>(array.Grid.GetBox(chunk).GetCount()) * array.GetSampleBytes());
+    file->ReadChunk(0, 0, chunk, bytes.data());
+    return bytes;
+  };
+  EXPECT_THROW(read([] { return false; }), dsm::Error);
+  EXPECT_TRUE(fs::is_empty(this->Caches / "dsm-ray-tracer"));
+  std::vector<Bytes> found(6);
+  std::vector<std::thread> threads;
+  for (Bytes& mine : found)
+  {
+    threads.emplace_back([&] { mine = read(); });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(static_cast<int>(found[0][2]), 3); // the second of 16 bits
+  EXPECT_EQ(found, std::vector<Bytes>(6, found[0]));
+  const fs::path copy = this->FindOnly();
+  const auto made = fs::last_write_time(copy);
+  const auto size = fs::file_size(copy);
+  EXPECT_EQ(read(), found[0]);
+  EXPECT_EQ(fs::last_write_time(copy), made);
+  for (const std::uintmax_t rest : { std::uintmax_t(0), size - 1 })
+  {
+    fs::resize_file(copy, rest);
+    fs::resize_file(copy, rest == 0 ? size : rest);
+    EXPECT_EQ(read(), found[0]);
+    EXPECT_EQ(this->FindOnly(), copy);
+    EXPECT_EQ(fs::file_size(copy), size);
+  }
+  fs::last_write_time(packed, fs::last_write_time(packed) + std::chrono::seconds(1));
+  EXPECT_EQ(read(), found[0]);
+  const fs::directory_iterator all(this->Caches / "dsm-ray-tracer");
+  EXPECT_EQ(std::distance(fs::begin(all), fs::end(all)), 2); // another file, for all that is known
+  setenv("XDG_CACHE_HOME", (this->Folder / "values.raw").c_str(), 1);
+  try
+  {
+    read();
+    ADD_FAILURE();
+  }
+  catch (const dsm::Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find("XDG_CACHE_HOME"), std::string::npos) << error.what();
+  }
 }

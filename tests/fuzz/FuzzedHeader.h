@@ -5,6 +5,8 @@
 #include "InputFolder.h"
 #include "VolumeCheck.h"
 
+#include <cstdlib>
+#include <filesystem>
 #include <vector>
 
 namespace fuzz
@@ -17,11 +19,13 @@ inline void CheckHeader(const char* name, const std::uint8_t* bytes, std::size_t
   {
     const std::vector<std::uint8_t> values(4096, 17);
     WriteInput(GetInputFolder() / "values.bin", values.data(), values.size());
+    setenv("XDG_CACHE_HOME", (GetInputFolder() / "caches").c_str(), 1);
     return true;
   }();
   const std::filesystem::path path = GetInputFolder() / name;
   WriteInput(path, bytes, count);
   CheckVolume(path);
+  std::filesystem::remove_all(GetInputFolder() / "caches"); // copies of unpacked values
   static_cast<void>(isThere);
 }
 

@@ -132,7 +132,7 @@ write_ome6(
     spacing=[0.5, 2.0, 4.0], origin=[30.0, 20.0, 10.0],
 )
 write_ome6(
-    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=1,
+    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=["shown in 'nanometer'"],
 )
 write_ome6(
     "six_time.zarr", scale([0.5, 4, 2, 1]), np.stack([values("<f4", step=step) for step in range(3)]), IN_TIME,

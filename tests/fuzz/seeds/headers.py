@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """NRRD and MetaImage: headers as programs and people write them, with the values behind them or in values.bin."""
 
+import bz2
+import gzip
+import zlib
+
 from seeds.common import values, write
 
 NRRD = {
@@ -18,7 +22,14 @@ NRRD = {
     "end": "type: int\ndimension: 3\nsizes: 5 4 6\nendian: little\nencoding: raw\ndatafile: values.bin\nbyteskip: -1\n",
     "list": "type: int\ndimension: 3\nsizes: 5 4 6\nencoding: raw\ndata file: LIST 2\na.bin\n",
     "pattern": "type: int\ndimension: 3\nsizes: 5 4 6\nencoding: raw\ndata file: slice%03d.bin 1 6 1 2\n",
-    "gzip": "type: unsigned long long int\ndimension: 3\nsizes: 5 4 6\nencoding: gzip\n",
+    "lists": "type: uchar\ndimension: 3\nsizes: 32 32 8\nencoding: raw\ndata file: LIST 3\nvalues.bin\nvalues.bin\n",
+    "las": "type: double\ndimension: 3\nspace: LAS\nsizes: 5 4 6\nspace directions: (0,1,0) (1,0,0) (0,0,2)\n"
+    "endian: little\nencoding: raw\nspace origin: (1,2,3)\nmeasurement frame: (1,0,0) (0,1,0) (0,0,1)\n",
+    "last": "type: short\ndimension: 4\nsizes: 5 4 6 3\nkinds: domain domain domain list\nendian: big\nencoding: raw\n",
+}
+PACKED = {
+    "gzip": (gzip.compress, "type: double\ndimension: 3\nsizes: 5 4 6\nendian: little\nencoding: gzip\n"),
+    "bzip2": (bz2.compress, "type: double\ndimension: 3\nsizes: 5 4 5\nencoding: bz2\nbyte skip: -1\n"),
 }
 META = {
     "plain": "ObjectType = Image\nNDims = 3\nDimSize = 5 4 6\nElementType = MET_SHORT\n",
@@ -37,6 +48,11 @@ def make(folder):
     for name, text in NRRD.items():
         for version in (1, 4, 5) if name == "plain" else (5,):
             write(folder, "Nrrd", f"{name}{version}", f"NRRD000{version}\n{text}\n".encode() + raw)
+    for name, (pack, text) in PACKED.items():
+        write(folder, "Nrrd", name, f"NRRD0005\n{text}\n".encode() + pack(raw))
+    packed = zlib.compress(raw)
+    text = f"NDims = 3\nDimSize = 5 4 6\nElementType = MET_DOUBLE\nCompressedData = T\nCompressedDataSize = {len(packed)}\n"
+    write(folder, "MetaImage", "packed", f"{text}ElementDataFile = LOCAL\n".encode() + packed)
     for name, text in META.items():
         for place, content in (("LOCAL", raw), ("values.bin", b""), ("LIST", b"a.bin\n"), ("slice%03d.bin 1 6 1", b"")):
             between = " : " if name == "colons" else " = "

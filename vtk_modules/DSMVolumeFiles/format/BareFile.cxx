@@ -4,7 +4,11 @@
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileError.h"
-#include "DSMVolumeFiles/format/StoredFile.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/format/UnpackedCopy.h"
+#include "DSMVolumeFiles/format/ValueBytes.h"
 
 #include <algorithm>
 #include <limits>
@@ -24,13 +28,41 @@ constexpr std::int64_t ChunkBytes = 1 << 18;
 constexpr std::int64_t RowBytes = 1024;
 constexpr std::int64_t Rows = 32;
 
+/// Returns the offset behind so many lines of text. Throws dsm::Error.
+std::uint64_t SkipLines(const std::string& path, std::int64_t lines, std::uint64_t from)
+{
+  if (lines == 0)
+  {
+    return from;
+  }
+  const std::string text =
+    ReadBeginning(path, static_cast<std::size_t>(from) + FileLimits::HeaderBytes);
+  for (std::size_t at = static_cast<std::size_t>(from);
+       (at = text.find('\n', at)) != std::string::npos;)
+  {
+    ++at;
+    if (--lines == 0)
+    {
+      return at;
+    }
+  }
+  throw FileError(path,
+    "cannot be read: it has fewer lines than are to be skipped before its values, or they take "
+    "more "
+    "than " +
+      std::to_string(FileLimits::HeaderBytes) + " bytes.");
+}
+
 class BareFile final : public VolumeFile
 {
 public:
-  BareFile(const std::string& path, const BareValues& values, const FileGeometry& geometry)
+  BareFile(const std::string& path, const BareValues& values, const FileGeometry& geometry,
+    const OpenOptions& options)
     : VolumeFile(path)
-    , File(std::make_shared<PositionedFile>(values.Path))
+    , Files(values.Paths)
+    , ComponentsApart(values.ComponentsApart)
   {
+    this->Warnings = values.Warnings;
     this->Geometry = geometry;
     this->Geometry.Points = values.Samples;
     FileArray array;
@@ -44,30 +76,44 @@ public:
     const auto need =
       static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), values.Samples }.GetCount()) *
       array.GetSampleBytes();
-    if (this->File->IsDirectory())
+    PackedValues packed;
+    packed.Encoding = values.Encoding;
+    packed.Skip = values.Skip;
+    packed.PartBytes = need / values.Paths.size();
+    for (const std::string& file : values.Paths)
     {
-      throw FileError(
-        path, "refers to '" + values.Path + "' for its values, which is a directory.");
-    }
-    const std::uint64_t has = this->File->GetBytes();
-    this->First =
-      values.Offset >= 0 ? static_cast<std::uint64_t>(values.Offset) : has - std::min(has, need);
-    const auto least = static_cast<std::uint64_t>(values.Least);
-    if (this->First < least || this->First > has || need > has - this->First)
-    {
-      throw FileError(values.Path,
-        "has " + std::to_string(has) + " bytes, but " + std::to_string(need) + " of values after " +
-          std::to_string(std::max(least, this->First)) +
-          " of header are expected. Check the dimensions and the type of the values.");
+      this->NameHeader(
+        [&] { packed.Parts.push_back(this->FindPart(file, values, packed.PartBytes)); });
     }
     // The stamp depends on how the values are read, so results kept for another description do not
     // apply.
-    const std::uint64_t manner[] = { this->File->GetStamp(), this->First,
-      static_cast<std::uint64_t>(values.Type), static_cast<std::uint64_t>(values.Components),
-      values.BigEndian ? 1u : 0u };
     bricks::ByteHash hash;
+    std::vector<ValuePart> parts;
+    for (const PackedValues::Part& part : packed.Parts)
+    {
+      const std::uint64_t place[] = { part.Place.Stamp, part.Place.Offset };
+      hash.Add(place, sizeof(place));
+      parts.push_back(part.Place);
+    }
+    const std::uint64_t manner[] = { static_cast<std::uint64_t>(values.Type),
+      static_cast<std::uint64_t>(values.Components),
+      (values.BigEndian ? 1u : 0u) + (values.ComponentsApart ? 2u : 0u),
+      static_cast<std::uint64_t>(values.Encoding), static_cast<std::uint64_t>(values.Skip) };
     hash.Add(manner, sizeof(manner));
     this->Stamp = hash.Get();
+    if (values.Encoding == StreamEncoding::Plain)
+    {
+      this->Bytes = std::make_unique<ValueBytes>(std::move(parts), packed.PartBytes);
+    }
+    else if (!options.OnlyHeader)
+    {
+      this->NameHeader(
+        [&]
+        {
+          this->Bytes = std::make_unique<ValueBytes>(
+            std::vector<ValuePart>{ UnpackOnce(packed, options.GoesOn) }, need);
+        });
+    }
     const std::size_t width = bricks::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {
@@ -78,7 +124,9 @@ public:
 
   std::vector<std::string> GetFiles(int) const override
   {
-    return { this->Path, this->File->GetPath() };
+    std::vector<std::string> files{ this->Path };
+    files.insert(files.end(), this->Files.begin(), this->Files.end());
+    return files;
   }
 
   void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
@@ -99,7 +147,7 @@ public:
     }
     catch (const dsm::Error& error)
     {
-      throw FileError({ this->File->GetPath(), array.Name, chunk }, error);
+      throw FileError({ this->Path, array.Name, chunk }, error);
     }
   }
 
@@ -116,7 +164,7 @@ public:
     }
     catch (const dsm::Error& error)
     {
-      throw FileError({ this->File->GetPath(), this->Arrays.front().Name, chunk }, error);
+      throw FileError({ this->Path, this->Arrays.front().Name, chunk }, error);
     }
     return true;
   }
@@ -131,37 +179,115 @@ public:
         this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk));
       pieces.insert(pieces.end(), more.begin(), more.end());
     }
-    this->File->Prefetch(std::move(pieces));
+    if (this->Bytes)
+    {
+      this->Bytes->Prefetch(pieces);
+    }
   }
 
 private:
-  void ReadRows(const FileArray& array, const bricks::Box& box, std::byte* out) const
+  /// An error of another file names the header, too.
+  template <class Call>
+  void NameHeader(const Call& call) const
   {
-    this->File->Read(this->FindPieces(array, box), out);
+    try
+    {
+      call();
+    }
+    catch (const FileError& error)
+    {
+      if (error.GetPlace().Path == this->Path)
+      {
+        throw;
+      }
+      throw FileError({ this->Path, {}, {} }, error);
+    }
   }
 
+  /// Looks at a file of values. Throws dsm::Error where it is too short.
+  PackedValues::Part FindPart(
+    const std::string& path, const BareValues& values, std::uint64_t need) const
+  {
+    const PositionedFile file(path);
+    if (file.IsDirectory())
+    {
+      throw FileError(this->Path, "refers to '" + path + "' for its values, which is a directory.");
+    }
+    const std::uint64_t has = file.GetBytes();
+    const auto least = static_cast<std::uint64_t>(values.Least);
+    const bool isPlain = values.Encoding == StreamEncoding::Plain;
+    const std::uint64_t bytes = isPlain ? need : static_cast<std::uint64_t>(values.PackedBytes);
+    const std::uint64_t first = values.Offset < 0
+      ? has - std::min(has, bytes)
+      : SkipLines(path, values.Lines, least) - least + static_cast<std::uint64_t>(values.Offset);
+    if (first < least || first > has || bytes > has - first)
+    {
+      throw FileError(path,
+        "has " + std::to_string(has) + " bytes, but " + std::to_string(bytes) + " of " +
+          (isPlain ? "" : "compressed ") + "values after " +
+          std::to_string(std::max(least, first)) +
+          " of header are expected. Check the dimensions and the type of the values.");
+    }
+    return { { path, first, file.GetStamp() }, bytes > 0 && !isPlain ? bytes : has - first };
+  }
+
+  void ReadRows(const FileArray& array, const bricks::Box& box, std::byte* out) const
+  {
+    if (!this->Bytes)
+    {
+      throw dsm::Error("only its header was opened");
+    }
+    if (!this->ComponentsApart)
+    {
+      this->Bytes->Read(this->FindPieces(array, box), out);
+      return;
+    }
+    const std::size_t width = bricks::GetBytes(array.Type);
+    const std::size_t sampleBytes = array.GetSampleBytes();
+    const std::size_t bytes = static_cast<std::size_t>(box.GetCount()) * sampleBytes;
+    ByteBuffer apart(bytes);
+    this->Bytes->Read(this->FindPieces(array, box), apart.data());
+    const std::byte* from = apart.data();
+    for (std::size_t component = 0; component < sampleBytes; component += width)
+    {
+      for (std::size_t at = component; at < bytes; at += sampleBytes, from += width)
+      {
+        std::copy_n(from, width, out + at);
+      }
+    }
+  }
+
+  /// In the order of the file.
   std::vector<PositionedFile::Piece> FindPieces(
     const FileArray& array, const bricks::Box& box) const
   {
     std::vector<PositionedFile::Piece> pieces;
     const bricks::Index3 samples = array.Grid.Samples;
     const bricks::Index3 size = box.GetSize();
+    const int parts = this->ComponentsApart ? array.Components : 1;
+    const std::size_t sampleBytes = array.GetSampleBytes() / static_cast<std::size_t>(parts);
+    const std::int64_t all = samples.x * samples.y * samples.z;
     // Whole rows follow one another.
     const std::int64_t rows = size.x == samples.x ? size.y : 1;
-    const std::size_t bytes = static_cast<std::size_t>(size.x * rows) * array.GetSampleBytes();
-    for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
+    const std::size_t bytes = static_cast<std::size_t>(size.x * rows) * sampleBytes;
+    for (int part = 0; part < parts; ++part)
     {
-      for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
+      for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
       {
-        const auto before = static_cast<std::uint64_t>((z * samples.y + y) * samples.x + box.Min.x);
-        pieces.push_back({ this->First + before * array.GetSampleBytes(), bytes });
+        for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
+        {
+          const auto before =
+            static_cast<std::uint64_t>(part * all + (z * samples.y + y) * samples.x + box.Min.x);
+          pieces.push_back({ before * sampleBytes, bytes });
+        }
       }
     }
     return pieces;
   }
 
-  std::shared_ptr<const PositionedFile> File;
-  std::uint64_t First = 0;
+  std::vector<std::string> Files;
+  std::unique_ptr<const ValueBytes> Bytes; ///< null: only the header was wanted
+  bool ComponentsApart;
   ChunkCodec Codec;
 };
 
@@ -193,10 +319,10 @@ ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes)
   return { samples, { std::max<std::int64_t>(1, samples.x), rows, planes } };
 }
 
-std::shared_ptr<VolumeFile> OpenBareFile(
-  const std::string& path, const BareValues& values, const FileGeometry& geometry)
+std::shared_ptr<VolumeFile> OpenBareFile(const std::string& path, const BareValues& values,
+  const FileGeometry& geometry, const OpenOptions& options)
 {
-  return std::make_shared<BareFile>(path, values, geometry);
+  return std::make_shared<BareFile>(path, values, geometry, options);
 }
 
 } // namespace vol

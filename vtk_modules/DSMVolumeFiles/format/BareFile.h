@@ -2,34 +2,47 @@
 #ifndef vol_BareFile_h
 #define vol_BareFile_h
 
+#include "DSMVolumeFiles/codec/StreamDecoder.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace vol
 {
 
-/// Description of the values of one array in a file: x fastest, uncompressed, contiguous.
+/// Description of the values of one array in a file, or in several that have equally many: x fastest, contiguous.
 struct BareValues
 {
-  std::string Path;
-  std::string Name; ///< name of the array
+  std::vector<std::string> Paths; ///< in the order of the values
+  std::string Name;               ///< name of the array
   bricks::Index3 Samples{ 0 };
   bricks::ScalarType Type = bricks::ScalarType::UInt8;
   std::int64_t Components = 1; ///< as declared
+  /// All samples of a component follow one another; else the components of a sample do.
+  bool ComponentsApart = false;
   bool BigEndian = false;
-  /// Before the first value; negative: the values are at the end of the file.
+  /// Of each file, before the first value or compressed byte; negative: they are at the end of the file.
   std::int64_t Offset = 0;
+  /// Lines of text in each file that the offset counts from.
+  std::int64_t Lines = 0;
   /// Smallest valid offset: the end of the header, if the file itself has one.
   std::int64_t Least = 0;
+  StreamEncoding Encoding = StreamEncoding::Plain;
+  /// Of each file, where it is compressed: unpacked bytes before its values, or -1 (PackedValues::Skip).
+  std::int64_t Skip = 0;
+  /// Compressed bytes in each file; 0: all that follow.
+  std::int64_t PackedBytes = 0;
+  std::vector<std::string> Warnings; ///< VolumeFile::GetWarnings
 };
 
 /// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at
-/// most 1 MiB. Throws dsm::Error when the file cannot be opened or is too short.
-std::shared_ptr<VolumeFile> OpenBareFile(
-  const std::string& path, const BareValues& values, const FileGeometry& geometry);
+/// most 1 MiB. Compressed values are unpacked once (UnpackOnce), unless OpenOptions::OnlyHeader is set. Throws dsm::Error
+/// when a file cannot be opened or is too short.
+std::shared_ptr<VolumeFile> OpenBareFile(const std::string& path, const BareValues& values,
+  const FileGeometry& geometry, const OpenOptions& options);
 
 /// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
 ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes);

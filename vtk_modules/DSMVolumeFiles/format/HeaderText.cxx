@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <system_error>
 
 namespace vol
@@ -19,39 +18,6 @@ namespace
 bool IsSpace(char letter)
 {
   return letter == ' ' || (letter >= '\t' && letter <= '\r');
-}
-
-bool IsDigit(char letter)
-{
-  return letter >= '0' && letter <= '9';
-}
-
-/// A word as printf has it for numbered files: "a%03d.raw".
-bool HasPlaceForNumber(const std::string& word)
-{
-  bool has = false;
-  for (std::size_t place = word.find('%'); place != std::string::npos && !has;
-       place = word.find('%', place + 1))
-  {
-    std::size_t end = place + 1;
-    while (end < word.size() && IsDigit(word[end]))
-    {
-      ++end;
-    }
-    has = end < word.size() && (word[end] == 'd' || word[end] == 'i' || word[end] == 'u');
-  }
-  return has;
-}
-
-/// "LIST", "LIST 2", or a pattern and its first, last and next number.
-bool MeansSeveralFiles(const std::string& place)
-{
-  const std::vector<std::string> words = HeaderText::Split(place);
-  const auto isNumber = [](const std::string& word)
-  { return !word.empty() && word.find_first_not_of("+-0123456789") == std::string::npos; };
-  return (!words.empty() && words.size() <= 2 && words.front() == "LIST") ||
-    (words.size() >= 3 && HasPlaceForNumber(words.front()) &&
-      std::all_of(words.begin() + 1, words.begin() + 3, isNumber));
 }
 
 /// Limit for the numbers in a field: one for each axis, or a matrix.
@@ -207,21 +173,6 @@ std::vector<double> HeaderText::ToNumbers(const std::string& name, const std::st
     numbers.push_back(number);
   }
   return numbers;
-}
-
-std::string HeaderText::FindValues(const std::string& name) const
-{
-  const std::string place = this->Get(name);
-  if (place.size() > FileLimits::NameBytes || place.find('\0') != std::string::npos)
-  {
-    this->Refuse("its field '" + name + "' is not a file name: " + Quote(place) + ".");
-  }
-  const std::string path = (std::filesystem::path(this->What).parent_path() / place).string();
-  if (MeansSeveralFiles(place) && FindPathKind(path) == PathKind::Nothing)
-  {
-    this->Refuse("its values are in several files, which is not supported. Save them as one file.");
-  }
-  return path;
 }
 
 void HeaderText::Refuse(const std::string& why) const

@@ -49,6 +49,7 @@ public:
   /// without the separator does nothing.
   void AddLine(const std::string& line, const std::string& separator);
 
+  const std::string& GetPath() const { return this->What; }
   bool Has(const std::string& name) const { return this->Values.count(name) != 0; }
   /// Empty where there is none.
   std::string Get(const std::string& name) const;
@@ -63,10 +64,6 @@ public:
     const std::string& name, std::int64_t usual, std::int64_t least = -MostInteger) const;
   /// Converts a part of the field `name` to numbers.
   std::vector<double> ToNumbers(const std::string& name, const std::string& text) const;
-
-  /// The path of the file with the values, which a field names from the header's folder on. Throws dsm::Error where the
-  /// field means several files: "LIST", or a pattern ("a%03d.raw 1 9 1"), unless a file is called so.
-  std::string FindValues(const std::string& name) const;
 
   [[noreturn]] void Refuse(const std::string& why) const;
 

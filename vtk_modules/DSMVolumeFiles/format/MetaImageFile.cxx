@@ -3,10 +3,12 @@
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
+#include "DSMVolumeFiles/format/ValueNames.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <vector>
 
 namespace vol
@@ -47,7 +49,7 @@ bool IsTrue(const HeaderText& header, const std::string& name)
 
 } // namespace
 
-std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path)
+std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path, const OpenOptions& options)
 {
   HeaderText header(path);
   HeaderLines lines(path);
@@ -61,14 +63,11 @@ std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path)
   {
     header.Refuse("it is not a three-dimensional MetaImage.");
   }
-  if (IsTrue(header, "compresseddata"))
-  {
-    header.Refuse("its values are compressed in one piece, so they cannot be read in parts. Save "
-                  "the file without compression.");
-  }
   if (header.Has("binarydata") && !IsTrue(header, "binarydata"))
   {
-    header.Refuse("its values are text, so they cannot be read in parts. Save the file as binary.");
+    header.Refuse("its values are text ('BinaryData = False'), which cannot be read in parts. Save "
+                  "it as binary, for "
+                  "example with ParaView's Meta Image reader and Save Data.");
   }
   BareValues values;
   values.Name = "values";
@@ -83,20 +82,29 @@ std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path)
     IsTrue(header, "binarydatabyteordermsb") || IsTrue(header, "elementbyteordermsb");
   // MetaIO counts from the beginning of the file with the values, also where that has a header; -1: they end it.
   values.Offset = header.GetInteger("headersize", 0, -1);
-  const std::string place = header.Get("elementdatafile");
-  if (HeaderText::ToLower(place) == "local")
+  if (IsTrue(header, "compresseddata"))
+  {
+    values.Encoding = StreamEncoding::Deflate;
+    values.PackedBytes = header.GetInteger("compresseddatasize", 0, 0);
+    if (values.Offset < 0 && values.PackedBytes == 0)
+    {
+      header.Refuse("its compressed values end the file ('HeaderSize = -1'), but it has no "
+                    "'CompressedDataSize'.");
+    }
+  }
+  if (HeaderText::ToLower(header.Get("elementdatafile")) == "local")
   {
     if (lines.HasEnded())
     {
       header.Refuse("the file ends after its header and has no values.");
     }
-    values.Path = path;
+    values.Paths = { path };
     values.Least = lines.GetPlace();
     values.Offset = values.Offset == 0 ? values.Least : values.Offset;
   }
   else
   {
-    values.Path = header.FindValues("elementdatafile");
+    values.Paths = FindValueFiles(header, "elementdatafile", lines, size);
   }
   FileGeometry geometry;
   const auto take = [&](std::initializer_list<const char*> names, double* out, std::size_t count)
@@ -127,7 +135,20 @@ std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path)
       geometry.Direction[3 * row + axis] = rows[3 * axis + row];
     }
   }
-  return OpenBareFile(path, values, geometry);
+  // MetaIO leaves these to the program, and ITK and VTK show the values as they are stored.
+  for (const auto& [name, field, same] :
+    { std::make_tuple("elementtointensityfunctionslope", "ElementToIntensityFunctionSlope", 1.0),
+      std::make_tuple(
+        "elementtointensityfunctionoffset", "ElementToIntensityFunctionOffset", 0.0) })
+  {
+    const std::vector<double> number = header.GetNumbers(name, 1);
+    if (!number.empty() && number.front() != same)
+    {
+      values.Warnings.push_back("has '" + std::string(field) + " = " + header.Get(name) +
+        "', which is not honored: values are shown as they are stored.");
+    }
+  }
+  return OpenBareFile(path, values, geometry, options);
 }
 
 } // namespace vol

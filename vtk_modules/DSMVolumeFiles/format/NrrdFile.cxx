@@ -3,11 +3,12 @@
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HeaderFiles.h"
 #include "DSMVolumeFiles/format/HeaderText.h"
+#include "DSMVolumeFiles/format/NrrdSpace.h"
+#include "DSMVolumeFiles/format/ValueNames.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <vector>
 
@@ -39,44 +40,10 @@ bricks::ScalarType ParseType(const HeaderText& header)
   const auto known = types.find(HeaderText::ToLower(header.Get("type")));
   if (known == types.end())
   {
-    header.Refuse("scalar type " + Quote(header.Get("type")) + " is not supported.");
+    header.Refuse("scalar type " + Quote(header.Get("type")) +
+      " is not supported. Integers of 8 to 64 bits, 'float' and 'double' are.");
   }
   return known->second;
-}
-
-/// "(1, 0, 0) (0,1,0) none" as vectors; an axis without one has none.
-std::vector<std::vector<double>> ParseVectors(const HeaderText& header, const std::string& name)
-{
-  std::vector<std::vector<double>> vectors;
-  const std::string text = header.Get(name);
-  for (std::size_t at = 0; (at = text.find_first_not_of(" \t\r", at)) != std::string::npos;)
-  {
-    if (vectors.size() == FileLimits::Axes)
-    {
-      header.Refuse(
-        "its field '" + name + "' has more than " + std::to_string(FileLimits::Axes) + " vectors.");
-    }
-    std::vector<double> numbers;
-    std::size_t end = text.find_first_of(text[at] == '(' ? ")" : " \t\r", at);
-    if (text[at] == '(')
-    {
-      if (end == std::string::npos)
-      {
-        header.Refuse("its field '" + name + "' has a vector without a closing parenthesis.");
-      }
-      std::string inner = text.substr(at + 1, end - at - 1);
-      std::replace(inner.begin(), inner.end(), ',', ' ');
-      numbers = header.ToNumbers(name, inner);
-      ++end;
-    }
-    else if (const std::string word = text.substr(at, end - at); word != "none")
-    {
-      header.Refuse(Quote(word) + " in its field '" + name + "' is not a vector.");
-    }
-    vectors.push_back(numbers);
-    at = std::min(end, text.size());
-  }
-  return vectors;
 }
 
 /// Which of its axes are those of space, or of time; what lies along the others are components.
@@ -84,7 +51,7 @@ std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
 {
   const std::vector<std::string> kinds =
     HeaderText::Split(HeaderText::ToLower(header.Get("kinds")));
-  const auto directions = ParseVectors(header, "space directions");
+  const auto directions = ParseNrrdVectors(header, "space directions");
   std::vector<std::size_t> domain;
   for (std::size_t axis = 0; axis < axes; ++axis)
   {
@@ -105,69 +72,103 @@ std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
   return domain;
 }
 
-/// Sets origin and spacing along an axis of a header without vectors. "axis mins" are the positions
-/// of the first samples, or of where their cells begin.
-void LocateByAxis(
-  const HeaderText& header, std::size_t axis, std::int64_t samples, FileGeometry& geometry, int to)
+/// "\"mm\" \"mm\" \"\"": texts in quotation marks.
+std::vector<std::string> ParseTexts(const HeaderText& header, const std::string& name)
 {
-  const std::vector<double> spacings = header.GetNumbers("spacings");
-  const std::vector<double> mins = header.GetNumbers("axis mins");
-  const std::vector<double> maxs = header.GetNumbers("axis maxs");
-  const auto get = [axis](const std::vector<double>& numbers)
-  { return axis < numbers.size() ? numbers[axis] : std::numeric_limits<double>::quiet_NaN(); };
-  const std::vector<std::string> centers =
-    HeaderText::Split(HeaderText::ToLower(header.Get("centers")));
-  const bool ofCells = axis < centers.size() && centers[axis] == "cell";
-  double step = get(spacings);
-  if (!std::isfinite(step) || step == 0.0)
+  std::vector<std::string> texts;
+  const std::string text = header.Get(name);
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at))
   {
-    const auto between = static_cast<double>(ofCells ? samples : samples - 1);
-    step = between > 0.0 ? (get(maxs) - get(mins)) / between : 1.0;
+    const std::size_t end = std::min(text.find('"', at + 1), text.size());
+    texts.push_back(text.substr(at + 1, end - at - 1));
+    at = std::min(end + 1, text.size());
   }
-  step = std::isfinite(step) && step != 0.0 ? step : 1.0;
-  geometry.Spacing[to] = std::abs(step);
-  geometry.Direction[4 * to] = step < 0.0 ? -1.0 : 1.0;
-  if (std::isfinite(get(mins)))
+  return texts;
+}
+
+/// Fields that would make another picture, and are not honored.
+void AddWarnings(const HeaderText& header, const std::vector<std::size_t>& domain,
+  const BareValues& values, std::vector<std::string>& warnings)
+{
+  for (const char* name : { "space units", "units" })
   {
-    geometry.Origin[to] = get(mins) + (ofCells ? 0.5 * step : 0.0);
+    const std::vector<std::string> units = ParseTexts(header, name);
+    const bool isOfSpace = std::string(name) != "units";
+    std::string first;
+    bool differs = false;
+    for (std::size_t axis = 0;
+         axis < (isOfSpace ? std::min<std::size_t>(3, units.size()) : domain.size()); ++axis)
+    {
+      const std::size_t number = isOfSpace ? axis : domain[axis];
+      const std::string unit = number < units.size() ? units[number] : "";
+      differs = differs || (!unit.empty() && !first.empty() && unit != first);
+      first = first.empty() ? unit : first;
+    }
+    if (differs)
+    {
+      warnings.push_back("has different units along its axes ('" + std::string(name) + ": " +
+        header.Get(name) + "'): its numbers are taken as if they were of one unit.");
+    }
+  }
+  if (values.Components == 3 && header.Has("measurement frame"))
+  {
+    const auto frame = ParseNrrdVectors(header, "measurement frame");
+    const std::vector<std::vector<double>> same{ { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    if (frame != same)
+    {
+      warnings.push_back(
+        "has a 'measurement frame', which is not honored: components of vectors are "
+        "shown as they are stored.");
+    }
+  }
+  const std::vector<double> spacings = header.GetNumbers("spacings");
+  const std::vector<double> thicknesses = header.GetNumbers("thicknesses");
+  for (const std::size_t axis : domain)
+  {
+    const bool hasSpacing = header.Has("space directions") || header.Has("axis maxs") ||
+      (axis < spacings.size() && std::isfinite(spacings[axis]));
+    if (!hasSpacing && axis < thicknesses.size() && std::isfinite(thicknesses[axis]))
+    {
+      warnings.push_back(
+        "has 'thicknesses' and no 'spacings' along an axis: the spacing there is 1.");
+      break;
+    }
+  }
+  if (header.Has("old min") || header.Has("old max"))
+  {
+    warnings.push_back(
+      "has 'old min' and 'old max', which are not honored: quantized values are shown as "
+      "they are stored.");
   }
 }
 
-FileGeometry ParseGeometry(
-  const HeaderText& header, const std::vector<std::size_t>& domain, const bricks::Index3& samples)
+StreamEncoding ParseEncoding(const HeaderText& header)
 {
-  FileGeometry geometry;
-  const auto directions = ParseVectors(header, "space directions");
-  for (std::size_t place = 0; place < domain.size(); ++place)
+  const std::string encoding = HeaderText::ToLower(header.Get("encoding"));
+  if (encoding == "raw")
   {
-    const std::size_t number = domain[place];
-    const auto axis = static_cast<int>(place);
-    LocateByAxis(header, number, samples[axis], geometry, axis);
-    if (number < directions.size() && directions[number].size() == 3)
-    {
-      const std::vector<double>& way = directions[number];
-      // An axis of no length has no direction: OpenVolumeFile refuses that of all formats.
-      const double length = std::hypot(way[0], way[1], way[2]);
-      geometry.Spacing[axis] = length > 0.0 ? length : 1.0;
-      for (std::size_t row = 0; row < 3; ++row)
-      {
-        geometry.Direction[3 * row + place] = way[row] / geometry.Spacing[axis];
-      }
-    }
+    return StreamEncoding::Plain;
   }
-  const auto origin = ParseVectors(header, "space origin");
-  if (!origin.empty() && origin.front().size() == 3)
+  if (encoding == "gzip" || encoding == "gz")
   {
-    std::copy_n(origin.front().begin(), 3, geometry.Origin);
+    return StreamEncoding::Deflate;
   }
-  return geometry;
+  if (encoding == "bzip2" || encoding == "bz2")
+  {
+    return StreamEncoding::Bzip2;
+  }
+  header.Refuse("its encoding is " + Quote(header.Get("encoding")) +
+    "; 'raw', 'gzip' and 'bzip2' are supported. Convert the file, for example with 'unu save -f "
+    "nrrd "
+    "-e raw -i IN.nrrd -o OUT.nrrd' (Debian: teem-unu).");
 }
 
 } // namespace
 
-std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path)
+std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions& options)
 {
-  HeaderText header(path, { "byte skip", "line skip", "data file", "axis mins", "axis maxs" });
+  HeaderText header(path,
+    { "byte skip", "line skip", "data file", "axis mins", "axis maxs", "old min", "old max" });
   HeaderLines lines(path);
   std::string line;
   lines.Next(line);
@@ -175,22 +176,20 @@ std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path)
   {
     header.Refuse("it does not start with NRRD.");
   }
-  while (lines.Next(line) && !HeaderText::Trim(line).empty())
+  bool isList = false; // of files: it ends the header
+  while (!isList && lines.Next(line) && !HeaderText::Trim(line).empty())
   {
     // "key:=value" lines are the user's own, not fields.
-    const std::size_t colon = line.find(':');
-    if (line[0] != '#' && line.compare(colon == std::string::npos ? 0 : colon, 2, ":=") != 0)
+    const std::size_t colon = std::min(line.find(':'), line.size());
+    if (line[0] != '#' && line.compare(colon, 2, ":=") != 0)
     {
       header.AddLine(line, ":");
+      const std::string name = HeaderText::ToLower(HeaderText::Trim(line.substr(0, colon)));
+      isList = (name == "data file" || name == "datafile") &&
+        IsList(line.substr(std::min(colon + 1, line.size())));
     }
   }
-  const std::string encoding = HeaderText::ToLower(header.Get("encoding"));
-  if (encoding != "raw")
-  {
-    header.Refuse("its encoding is " + Quote(encoding) +
-      ", but only 'raw' can be read in parts. Convert the file, for example with 'unu save -e "
-      "raw'.");
-  }
+  const StreamEncoding encoding = ParseEncoding(header);
   const std::vector<std::int64_t> sizes = header.GetIntegers("sizes");
   const std::vector<std::size_t> domain = FindDomain(header, sizes.size());
   const bool hasComponents = domain.size() < sizes.size();
@@ -200,42 +199,54 @@ std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path)
       std::to_string(domain.size()) +
       " of them spatial. A volume has three spatial axes and may have one axis of components.");
   }
-  if (hasComponents && domain.front() == 0)
+  const bool isLast = domain.front() == 0 && domain.back() + 1 == domain.size();
+  if (hasComponents && domain.front() == 0 && !isLast)
   {
-    header.Refuse("its axis of components is not the first axis. Reorder the axes, for example "
+    header.Refuse("its axis of components is neither the first nor the last axis. Reorder the "
+                  "axes, for example "
                   "with 'unu permute'.");
   }
   BareValues values;
   values.Name = header.Get("content").empty() ? "values" : header.Get("content");
-  values.Components = hasComponents ? sizes.front() : 1;
+  values.Components = !hasComponents ? 1 : isLast ? sizes.back() : sizes.front();
+  values.ComponentsApart = hasComponents && isLast;
   values.Samples = bricks::Index3(1);
   for (std::size_t axis = 0; axis < domain.size(); ++axis)
   {
     values.Samples[static_cast<int>(axis)] = sizes[domain[axis]];
   }
   values.Type = ParseType(header);
-  values.BigEndian = HeaderText::ToLower(header.Get("endian")) == "big";
-  values.Offset = header.GetInteger("byte skip", 0, -1);
-  if (header.GetInteger("line skip", 0) > 0)
+  values.Encoding = encoding;
+  const std::string endian = HeaderText::ToLower(header.Get("endian"));
+  values.BigEndian = endian == "big";
+  if (endian != "big" && endian != "little" && bricks::GetBytes(values.Type) > 1)
   {
-    header.Refuse("it sets 'line skip', which is not supported.");
+    values.Warnings.push_back(
+      "has no 'endian' that is 'big' or 'little': its values are taken for little-endian.");
   }
-  const std::string separate = header.Get("data file");
-  if (separate.empty())
+  // Bytes to skip are those of what is unpacked.
+  const std::int64_t skip = header.GetInteger("byte skip", 0, -1);
+  const bool isPlain = encoding == StreamEncoding::Plain;
+  values.Offset = isPlain ? skip : 0;
+  values.Skip = isPlain ? 0 : skip;
+  values.Lines = header.GetInteger("line skip", 0, 0);
+  if (header.Get("data file").empty())
   {
     if (lines.HasEnded())
     {
       header.Refuse("the file ends after its header: the empty line and the values are missing.");
     }
-    values.Path = path;
+    values.Paths = { path };
     values.Least = lines.GetPlace();
     values.Offset += values.Offset < 0 ? 0 : values.Least;
   }
   else
   {
-    values.Path = header.FindValues("data file");
+    values.Paths = FindValueFiles(header, "data file", lines, sizes);
   }
-  return OpenBareFile(path, values, ParseGeometry(header, domain, values.Samples));
+  const FileGeometry geometry = PlaceNrrd(header, domain, values.Samples, values.Warnings);
+  AddWarnings(header, domain, values, values.Warnings);
+  return OpenBareFile(path, values, geometry, options);
 }
 
 } // namespace vol

@@ -111,8 +111,9 @@ Format TryFindFormat(const std::string& path)
   }
 }
 
-std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions::Raw& options)
+std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions& all)
 {
+  const OpenOptions::Raw& options = all.Bare;
   if (glm::any(glm::lessThanEqual(options.Samples, bricks::Index3(0))))
   {
     throw dsm::Error("Enter Raw Dimensions in the Properties panel and press Apply: '" + path +
@@ -121,7 +122,7 @@ std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions::
       "dsm_convert: --raw-size.)");
   }
   BareValues values;
-  values.Path = path;
+  values.Paths = { path };
   values.Name = "values";
   values.Samples = options.Samples;
   values.Type = options.Type;
@@ -129,7 +130,7 @@ std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions::
   values.BigEndian = options.BigEndian;
   values.Offset = static_cast<std::int64_t>(
     std::min<std::uint64_t>(options.HeaderBytes, std::numeric_limits<std::int64_t>::max()));
-  return OpenBareFile(path, values, {});
+  return OpenBareFile(path, values, {}, all);
 }
 
 /// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
@@ -148,11 +149,11 @@ std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOption
   switch (FindFormat(path))
   {
     case Format::Raw:
-      return OpenRaw(path, options.Bare);
+      return OpenRaw(path, options);
     case Format::Nrrd:
-      return OpenNrrd(path);
+      return OpenNrrd(path, options);
     case Format::MetaImage:
-      return OpenMetaImage(path);
+      return OpenMetaImage(path, options);
     case Format::Zarr:
       return OpenZarr(FindZarrFolder(path), options);
     case Format::Hdf:
@@ -373,7 +374,9 @@ std::uint64_t FindStamp(const std::string& path, const OpenOptions& options)
   const std::string extension =
     HeaderText::ToLower(std::filesystem::path(path).extension().string());
   const bool isApart = extension == ".nhdr" || extension == ".mhd" || !FindZarrFolder(path).empty();
-  return isApart ? OpenVolumeFile(path, options)->GetStamp() : PositionedFile(path).GetStamp();
+  OpenOptions header = options;
+  header.OnlyHeader = true;
+  return isApart ? OpenVolumeFile(path, header)->GetStamp() : PositionedFile(path).GetStamp();
 }
 
 bool IsBareFile(const std::string& path)

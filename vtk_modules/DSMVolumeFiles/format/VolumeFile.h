@@ -192,6 +192,9 @@ struct OpenOptions
   /// Called now and then by the opening thread while a file is being opened, because an index of many chunks
   /// takes time. If it returns false, opening ends with dsm::Error. May be empty.
   std::function<bool()> GoesOn;
+  /// Only what headers and file systems say is wanted: compressed values of NRRD and MetaImage are not unpacked, and
+  /// cannot be read.
+  bool OnlyHeader = false;
 
   /// Description of a file of bare values (.raw).
   struct Raw

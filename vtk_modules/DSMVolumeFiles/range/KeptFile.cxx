@@ -3,13 +3,13 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/CacheFolder.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -47,14 +47,11 @@ void RemoveUnused(const std::filesystem::path& folder)
 std::filesystem::path GetBeginning(
   const VolumeFile& file, std::size_t array, int step, const std::string& kind)
 {
-  const char* const caches = std::getenv("XDG_CACHE_HOME");
-  const char* const home = std::getenv("HOME");
-  if (!(caches && *caches) && !(home && *home))
+  const std::filesystem::path folder = GetCacheFolder();
+  if (folder.empty())
   {
     return {};
   }
-  const std::filesystem::path folder =
-    caches && *caches ? std::filesystem::path(caches) : std::filesystem::path(home) / ".cache";
   std::error_code failure;
   const VolumeFile::StepOrigin origin = file.GetOrigin(step);
   const std::string path = std::filesystem::absolute(origin.Path, failure).string();
@@ -71,7 +68,7 @@ std::filesystem::path GetBeginning(
   {
     hash.Add(&kept.Valid, sizeof(kept.Valid));
   }
-  return folder / "dsm-ray-tracer" / (kind + "-" + std::to_string(hash.Get()) + "-");
+  return folder / (kind + "-" + std::to_string(hash.Get()) + "-");
 }
 
 /// The box's six numbers, with nothing behind them.

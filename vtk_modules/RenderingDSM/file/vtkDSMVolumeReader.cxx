@@ -264,6 +264,7 @@ const char* vtkDSMVolumeReader::GetLevelNames()
       {
         vol::OpenOptions options = this->GetOptions();
         options.Level = 0;
+        options.OnlyHeader = true;
         for (int levels = 1; options.Level < levels; ++options.Level)
         {
           const auto file = self.File && self.Options.Level == options.Level
