@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers that a brick file or a kept file declares are checked: what cannot be right is found anew, or an error that
-names the file. Save Data leaves the files of others alone. Further arguments: a folder to write to, and a Python that has
+names the file. Save Data leaves the files of others alone. Files that grow are shown as far as they are. Further arguments: a folder to write to, and a Python that has
 h5py."""
 
 import fcntl
@@ -214,3 +214,57 @@ for name in ("taken caf\u00e9 %s%n.h5", "taken" + "x" * 235 + ".h5"):
     check(said == "" and reader.PointData["f"].GetRange() == true_range, "and it is read")
     simple.Delete(reader)
     os.remove(path(name))
+
+# A file to which another program appends (SWMR): what is there is shown, and more after Reload Files.
+APPEND = """
+import h5py, sys
+file = h5py.File(sys.argv[1], "w", libver="latest")
+values = file.create_dataset("v", (0, 16, 16, 16), "f4", maxshape=(None, 16, 16, 16), chunks=(1, 8, 16, 16))
+file.swmr_mode = sys.argv[2] == "swmr"
+for line in sys.stdin:
+    step = values.shape[0]
+    values.resize(step + 1, 0)
+    values[step] = step
+    values.flush()
+    print(step, flush=True)
+"""
+
+
+class Writer:
+    def __init__(self, name, mode):
+        command = [PYTHON, "-c", APPEND, path(name), mode]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def append(self, steps):
+        for _ in range(steps):
+            self.process.stdin.write("\n")
+            self.process.stdin.flush()
+            self.process.stdout.readline()
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+
+writer = Writer("live.h5", "swmr")
+writer.append(3)
+said, reader, _ = open_file("live.h5")
+check(said == "" and list(reader.TimestepValues) == [0, 1, 2], f"a file that grows has its steps: {said}")
+reader.UpdatePipeline(2)
+check(reader.PointData["v"].GetRange(0) == (2, 2), "and their values")
+writer.append(1)
+simple.ReloadFiles(reader)
+reader.UpdatePipelineInformation()
+reader.UpdatePipeline(3)
+check(len(reader.TimestepValues) == 4 and reader.PointData["v"].GetRange(0) == (3, 3), "Reload Files shows more")
+simple.Delete(reader)
+writer.kill()
+said, reader, _ = open_file("live.h5")
+check(said == "" and len(reader.TimestepValues) == 4, f"also after its writer was killed: {said}")
+simple.Delete(reader)
+writer = Writer("torn.h5", "")
+writer.append(1)
+writer.kill()
+said, reader, _ = open_file("torn.h5")
+check("torn.h5" in said and "h5clear" in said, f"a file of a killed writer has an error that says what to run: {said}")
+simple.Delete(reader)

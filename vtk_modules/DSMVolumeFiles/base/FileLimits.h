@@ -32,7 +32,9 @@ constexpr std::uint64_t Axes = 32;        ///< HDF5's own limit
 constexpr std::uint64_t Filters = 32;     ///< HDF5's own limit; also codecs of a Zarr array
 constexpr std::uint64_t Compressors =
   4; ///< among the filters: each may need more memory than the one before
-constexpr std::uint64_t Levels = 64;      ///< levels of detail
+constexpr std::uint64_t Coordinates = 1
+  << 20;                             ///< of samples along an axis, where they are told one by one
+constexpr std::uint64_t Levels = 64; ///< levels of detail
 constexpr std::uint64_t Chunks = 1 << 26; ///< that are stored, of an array
 constexpr std::uint64_t ShardChunks = 1
   << 21; ///< in a shard of a Zarr array, whose index is read whole

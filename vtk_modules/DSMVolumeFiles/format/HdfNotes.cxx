@@ -31,8 +31,9 @@ std::string GetLastWord(const std::string& path)
 std::vector<double> ReadCoordinates(hid_t group, const char* name, hsize_t length)
 {
   std::vector<double> numbers;
-  ReadHdfWhole(group, name, H5T_NATIVE_DOUBLE, length, numbers);
-  if (numbers.size() == 2 && length > 2)
+  const auto most = static_cast<hsize_t>(FileLimits::Coordinates);
+  ReadHdfWhole(group, name, H5T_NATIVE_DOUBLE, std::min(most, length), numbers);
+  if (numbers.size() == 2 && length > 2 && length <= most)
   {
     for (hsize_t index = 2; index < length; ++index)
     {

@@ -320,6 +320,10 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
   {
     refuse("spacing", "a number is not finite");
   }
+  if (std::count(geometry.Spacing, geometry.Spacing + 3, 0.0) > 0)
+  {
+    refuse("spacing", "a number is zero");
+  }
   const double* const m = geometry.Direction;
   if (!areFinite(m, 9))
   {

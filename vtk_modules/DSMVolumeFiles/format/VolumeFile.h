@@ -62,7 +62,7 @@ using GridCoordinates = std::array<std::vector<double>, 3>;
 /// any sample.
 bool IsSamePlace(const FileGeometry& a, const FileGeometry& b);
 
-/// Throws dsm::Error, which names the file, where a number is not finite, or where the directions of the axes lie in one
+/// Throws dsm::Error, which names the file, where a number is not finite, or a distance zero, or where the directions of the axes lie in one
 /// plane: no world position would have an index.
 void CheckGeometry(const std::string& path, const FileGeometry& geometry);
 

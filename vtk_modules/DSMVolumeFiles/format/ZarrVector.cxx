@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileError.h"
+#include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
@@ -58,7 +59,7 @@ std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most
   const std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
   const bool isRight = data && data->Shape.size() == 1 && data->ChunkShape.size() == 1 &&
     data->Shape[0] > 0 && data->ChunkShape[0] > 0 && !data->Shards &&
-    static_cast<std::uint64_t>(data->Shape[0]) <= most;
+    static_cast<std::uint64_t>(data->Shape[0]) <= std::min(most, FileLimits::Coordinates);
   // A chunk may be larger than the array.
   if (!isRight || data->ChunkShape[0] > std::max<std::int64_t>(data->Shape[0], 1 << 16))
   {
