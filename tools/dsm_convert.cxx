@@ -37,14 +37,20 @@ struct Options
 };
 
 template <class T>
-void AddChoice(CLI::App& app, const std::string& name, T& value,
+CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
   const std::map<std::string, T>& choices, const std::string& text)
 {
-  app
+  return app
     .add_option_function<std::string>(
       name, [&value, choices](const std::string& word) { value = choices.at(word); }, text)
     ->check(CLI::IsMember(choices));
 }
+
+/// Names of scalar types in VTK and ParaView, and the names here.
+const std::map<std::string, std::string> VtkTypes = { { "signed char", "int8" },
+  { "unsigned char", "uint8" }, { "short", "int16" }, { "unsigned short", "uint16" },
+  { "int", "int32" }, { "unsigned int", "uint32" }, { "long long", "int64" },
+  { "unsigned long long", "uint64" }, { "float", "float32" }, { "double", "float64" } };
 
 /// Three numbers with commas between them.
 template <class T>
@@ -132,7 +138,13 @@ Options Parse(CLI::App& app, int argc, char** argv)
       { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
       { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
       { "float64", Type::Float64 } },
-    "scalar type of the values");
+    "scalar type of the values")
+    ->transform(
+      [](const std::string& word)
+      {
+        const auto known = VtkTypes.find(word);
+        return known != VtkTypes.end() ? known->second : word;
+      });
   raw
     .add_option(
       "--raw-header", bare.HeaderBytes, "number of bytes before the first value (default: 0)")

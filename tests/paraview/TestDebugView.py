@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Debug views: what they show has the colours it should, over the same pixels."""
 
+from vtkmodules.vtkIOImage import vtkPNGReader
+
 from dsm_testing import *
 
 load_plugin()
@@ -93,3 +95,33 @@ display.SMProxy.UpdatePropertyInformation()
 summary = display.GetPropertyValue("DSMStatisticsSummary")
 check(" ms, 4 of 4 samples, " in summary, f"how many samples the picture has: {summary!r}")
 check("object based" in summary.lower(), "how the bricks are kept")
+
+# A screenshot that is larger than the window is rendered in tiles; the figures and the legend are drawn once.
+display.DSMSamplesPerPixel = 1
+
+
+def read(path):
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def save(name):
+    """The rows and columns where annotations are, of a screenshot of twice the window's size."""
+    path = os.path.join(OUTPUT, f"{name}.{get_ranks()}.png")
+    display.DSMShowStatistics = display.DSMShowLegend = 0
+    simple.SaveScreenshot(path, view, ImageResolution=[840, 480])
+    without = read(path)
+    display.DSMShowStatistics, display.DSMShowLegend = int(name == "statistics_in_tiles"), int(name == "legend_in_tiles")
+    simple.SaveScreenshot(path, view, ImageResolution=[840, 480])
+    return numpy.nonzero(abs(read(path) - without).max(axis=2) > 60)
+
+
+rows, columns = save("statistics_in_tiles")
+check(rows.min() > 240 and columns.min() < 40, f"figures once, at the upper left: rows from {rows.min()} on")
+display.DSMDebugView = "Brick"
+rows, columns = save("legend_in_tiles")
+check(rows.max() < 200 and columns.max() < 420, f"a legend once, at the lower left: rows up to {rows.max()}")

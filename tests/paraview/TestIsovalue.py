@@ -166,3 +166,28 @@ mesh.Input = simple.Cone()
 with Messages() as messages:
     render(view)
 check("'Normals' does not exist" in messages.text, "what is chosen stays, with a warning: " + messages.text)
+
+# Fills that nothing declares count neither for the first isovalue nor for the slider, but the array has them.
+FILLED = """
+image.SetExtent(piece)
+values = distance(piece).astype(TYPE) if SCALE == 1 else (SCALE * distance(piece)).astype(TYPE)
+x = points(piece)[0]
+add(image, np.where(x > 30, TYPE(FILL), values))
+"""
+simple.Hide(mesh, view)
+for kind, fill, scale in (("np.float32", 1e20, 1), ("np.float32", -3.4028235e38, 1), ("np.float64", -1.7976931348623157e308, 1),
+                          ("np.int16", -32768, 1000), ("np.int16", -3024, 1000)):
+    script = FILLED.replace("TYPE", kind).replace("FILL", repr(fill)).replace("SCALE", str(scale))
+    filled = image_source(script, in_parts=True, extent=(0, 48, 0, 48, 0, 48))
+    display = show_traced(filled, view)
+    place_camera(view)
+    with Messages() as messages:
+        covered = get_covered(render(view)).mean()
+    check(0.1 * scale < display.DSMIsoValue < 2 * scale, f"{fill} in {kind}: {display.DSMIsoValue}{messages.text}")
+    check(0.02 < covered < 0.9, f"a surface on {100 * covered:.0f} % of the view")
+    domain = display.SMProxy.GetProperty("DSMIsoValue").FindDomain("vtkSMDoubleRangeDomain")
+    check(-scale < domain.GetMinimum(0) < domain.GetMaximum(0) < 3 * scale,
+          f"the slider is from {domain.GetMinimum(0)} to {domain.GetMaximum(0)}")
+    shown = filled.PointData["f"].GetRange()
+    check(any(abs(end - fill) <= 1e-6 * abs(fill) for end in shown), f"the range that is told stays {shown}")
+    simple.Delete(filled)

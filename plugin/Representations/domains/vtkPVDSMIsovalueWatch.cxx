@@ -3,6 +3,7 @@
 
 #include "vtkPVDSMNoUndo.h"
 #include "vtkSMDSMImageRepresentationProxy.h"
+#include "vtkSMDSMIsovalueDomain.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkClientServerStream.h"
@@ -97,6 +98,14 @@ void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
     return;
   }
   volume->NoteRender();
+  for (const char* name : { Single, List })
+  {
+    auto* const domain = representation->GetProperty(name)->FindDomain<vtkSMDSMIsovalueDomain>();
+    if (domain)
+    {
+      domain->TakeSuggestedRange();
+    }
+  }
   this->BeginList(representation);
   if (!volume->IsIsovalueAutomatic() ||
     vtkSMPropertyHelper(representation, List).GetNumberOfElements() > 0)

@@ -3,6 +3,7 @@
 
 #include "vtkSMDSMImageRepresentationProxy.h"
 
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -19,7 +20,11 @@ constexpr double Beginning = 0.5 + 0.01 / 3.14159265358979;
 
 vtkStandardNewMacro(vtkSMDSMIsovalueDomain);
 
-vtkSMDSMIsovalueDomain::vtkSMDSMIsovalueDomain() = default;
+vtkSMDSMIsovalueDomain::vtkSMDSMIsovalueDomain()
+  : Suggested{ vtkMath::Nan(), vtkMath::Nan() }
+{
+}
+
 vtkSMDSMIsovalueDomain::~vtkSMDSMIsovalueDomain() = default;
 
 int vtkSMDSMIsovalueDomain::SetDefaultValues(vtkSMProperty* property, bool useUncheckedValues)
@@ -48,6 +53,45 @@ int vtkSMDSMIsovalueDomain::SetDefaultValues(vtkSMProperty* property, bool useUn
     }
   }
   return this->Superclass::SetDefaultValues(property, useUncheckedValues);
+}
+
+void vtkSMDSMIsovalueDomain::Update(vtkSMProperty* property)
+{
+  this->Superclass::Update(property);
+  if (property && property == this->GetRequiredProperty("ArraySelection"))
+  {
+    // The next render suggests a range of the other array.
+    this->Suggested[0] = this->Suggested[1] = vtkMath::Nan();
+  }
+  int isKnown[2] = { 0, 0 };
+  const double least = this->GetMinimum(0, isKnown[0]);
+  const double most = this->GetMaximum(0, isKnown[1]);
+  if (isKnown[0] && isKnown[1] && this->Suggested[0] >= least && this->Suggested[1] <= most)
+  {
+    this->SetEntries({ vtkEntry(this->Suggested[0], this->Suggested[1]) });
+  }
+}
+
+void vtkSMDSMIsovalueDomain::TakeSuggestedRange()
+{
+  vtkSMProxy* const representation = this->GetProperty()->GetParent();
+  vtkSMProperty* const suggestion =
+    representation ? representation->GetProperty("DSMSuggestedRange") : nullptr;
+  if (!suggestion)
+  {
+    return;
+  }
+  suggestion->GetParent()->UpdatePropertyInformation(suggestion);
+  const vtkSMPropertyHelper range(suggestion);
+  const auto isOther = [](double one, double other)
+  { return one != other && !(std::isnan(one) && std::isnan(other)); };
+  if (isOther(range.GetAsDouble(0), this->Suggested[0]) ||
+    isOther(range.GetAsDouble(1), this->Suggested[1]))
+  {
+    this->Suggested[0] = range.GetAsDouble(0);
+    this->Suggested[1] = range.GetAsDouble(1);
+    this->Update(nullptr);
+  }
 }
 
 int vtkSMDSMIsovalueDomain::SetSingle(vtkSMProperty* property)

@@ -6,7 +6,8 @@
  * The panel's reset button takes it. What the data suggest is known once they have been shown; until then, and where
  * they suggest none, the default is that of ParaView's ArrayRangeDomain. A display's single isovalue is automatic by
  * default, and begins with a number near the middle of the range that nobody would enter: ParaView does not tell when a
- * property is set to the number that it has. The name is what ParaView makes of the element DSMIsovalueDomain.
+ * property is set to the number that it has. If the shown data have fill values that nothing declares, the range is that of
+ * the other values: a slider over -3.4e38 to 1 is of no use. The name is what ParaView makes of the element DSMIsovalueDomain.
  */
 
 #ifndef vtkSMDSMIsovalueDomain_h
@@ -23,12 +24,21 @@ public:
 
   int SetDefaultValues(vtkSMProperty* property, bool useUncheckedValues) override;
 
+  void Update(vtkSMProperty* property) override;
+
+  /**
+   * After a render: takes the range that the shown data suggest for the domain's property.
+   */
+  void TakeSuggestedRange();
+
 protected:
   vtkSMDSMIsovalueDomain();
   ~vtkSMDSMIsovalueDomain() override;
 
 private:
   int SetSingle(vtkSMProperty* property);
+
+  double Suggested[2]; ///< not a number where all values count
 
   vtkSMDSMIsovalueDomain(const vtkSMDSMIsovalueDomain&) = delete;
   void operator=(const vtkSMDSMIsovalueDomain&) = delete;

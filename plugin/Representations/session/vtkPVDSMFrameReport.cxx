@@ -34,6 +34,14 @@ double vtkPVDSMFrameReport::GetSuggestedIsoValue()
   return this->Volume ? this->Volume->GetSuggestedIsoValue() : vtkMath::Nan();
 }
 
+double* vtkPVDSMFrameReport::GetSuggestedRange()
+{
+  const double* const range = this->Volume ? this->Volume->GetSuggestedRange() : nullptr;
+  this->Range[0] = range ? range[0] : vtkMath::Nan();
+  this->Range[1] = range ? range[1] : vtkMath::Nan();
+  return this->Range;
+}
+
 double vtkPVDSMFrameReport::GetFrameTime()
 {
   vtkDSMScene* const scene = this->FindScene();

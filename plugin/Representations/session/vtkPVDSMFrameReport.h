@@ -44,6 +44,11 @@ public:
   double GetSuggestedIsoValue();
 
   /**
+   * Range of the values without fills that nothing declares; not a number where there are none.
+   */
+  double* GetSuggestedRange() VTK_SIZEHINT(2);
+
+  /**
    * Seconds the last frame took to trace; 0 without one.
    */
   double GetFrameTime();
@@ -98,6 +103,7 @@ private:
   bool Progressive = false;
   bool Interacting = false;
   int Samples[2] = { 0, 0 };
+  double Range[2] = { 0.0, 0.0 };
   std::string Text;
 };
 

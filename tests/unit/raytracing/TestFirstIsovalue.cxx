@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <thread>
 
 namespace
@@ -68,7 +69,7 @@ std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
           }
           mine.push_back(share);
         }
-        found[rank] = bricks::FindFirstIsovalue(mine, messenger);
+        found[rank] = bricks::FindFirstLook(mine, messenger).Isovalue;
         messenger.Barrier();
       });
   }
@@ -178,4 +179,53 @@ TEST(TestFirstIsovalue, ThereIsNoneWhereNoSurfaceIs)
   EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return 3.0f; })));
   EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return NAN; })));
   EXPECT_FALSE(FindOnRanks({ nullptr }, 2).back());
+}
+
+/// A ball whose other half, beyond x = 40, is a fill value that nothing declares.
+template <class T>
+TestVolume<T> MakeFilled(double fill, double scale)
+{
+  return TestVolume<T>(bricks::Index3(Points),
+    [=](int x, int y, int z)
+    { return static_cast<T>(x > 40 ? fill : scale * GetSquaredDistance(x, y, z)); });
+}
+
+template <class T>
+void ExpectFillDoesNotCount(double fill, double scale)
+{
+  MemoryStore store;
+  const Fields fields{ CreateField(store, MakeFilled<T>(fill, scale)) };
+  const auto found = FindOnRanks(fields, 1).front();
+  ASSERT_TRUE(found) << fill;
+  EXPECT_GT(*found, 0.3 * scale) << fill;
+  EXPECT_LT(*found, 2.0 * scale) << fill;
+  EXPECT_EQ(FindOnRanks(fields, 3).back(), found) << fill;
+}
+
+TEST(TestFirstIsovalue, FillsDoNotCount)
+{
+  for (const double fill : { 1e37, 9.96921e36, -3.4028235e38, 1e20, -9999.0, -32768.0 })
+  {
+    ExpectFillDoesNotCount<float>(fill, 1.0);
+    ExpectFillDoesNotCount<double>(fill, 100.0);
+  }
+  ExpectFillDoesNotCount<double>(std::numeric_limits<double>::lowest(), 1.0);
+  ExpectFillDoesNotCount<double>(std::numeric_limits<double>::max(), 1.0);
+  ExpectFillDoesNotCount<std::int16_t>(-32768, 1000.0);
+  ExpectFillDoesNotCount<std::int16_t>(-3024, 1000.0);
+  ExpectFillDoesNotCount<std::int16_t>(-2000, 500.0);
+}
+
+TEST(TestFirstIsovalue, ValuesThatDoNotStandAloneCount)
+{
+  // A ball of one value in noise; and one that falls off without a gap.
+  const auto inNoise = Find(TestVolume<float>(bricks::Index3(Points),
+    [](int x, int y, int z)
+    { return GetSquaredDistance(x, y, z) < 0.2f ? 4095.0f : static_cast<float>((x + y) % 7); }));
+  ASSERT_TRUE(inNoise);
+  EXPECT_GT(*inNoise, 100.0);
+  const auto steep = Find(TestVolume<double>(bricks::Index3(Points),
+    [](int x, int y, int z) { return std::pow(10.0, 20.0 - 30.0 * GetSquaredDistance(x, y, z)); }));
+  ASSERT_TRUE(steep);
+  EXPECT_GT(*steep, 1e16);
 }

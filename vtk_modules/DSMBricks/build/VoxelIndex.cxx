@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/layout/FillValues.h"
 #include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMCore/base/Error.h"
 
@@ -230,6 +231,60 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
     index.Survey.Add(survey);
   }
   return index;
+}
+
+void VoxelIndex::LeaveOutFills(dsm::Messenger& messenger, const BrickLattice& lattice,
+  const dsm::BlockReader& reader, int threads)
+{
+  constexpr std::size_t mostBricks = 128;
+  std::vector<dsm::BlockId> mine;
+  const auto choose = [&]
+  {
+    std::vector<dsm::BlockId> all;
+    for (std::size_t id = 0; id < this->Bricks.size(); ++id)
+    {
+      if (this->Bricks[id].First <= this->Bricks[id].Last)
+      {
+        all.push_back(static_cast<dsm::BlockId>(id));
+      }
+    }
+    const std::size_t count = std::min(all.size(), mostBricks);
+    const auto ranks = static_cast<std::size_t>(messenger.GetSize());
+    for (auto number = static_cast<std::size_t>(messenger.GetRank()); number < count;
+         number += ranks)
+    {
+      mine.push_back(all[all.size() * number / count]);
+    }
+  };
+  const auto look = [&](const ValueLimits& limits)
+  {
+    LimitedSurvey sum;
+    messenger.RunTogether("Indexing the volume",
+      [&]
+      {
+        if (mine.empty())
+        {
+          choose();
+        }
+        const auto workers = static_cast<std::size_t>(std::max(1, threads));
+        BrickLooker looker(lattice, reader, static_cast<int>(workers));
+        std::vector<LimitedSurvey> parts(workers);
+        ParallelFor(static_cast<int>(workers), mine.size(),
+          [&](std::size_t number, int thread)
+          {
+            const dsm::BlockId id = mine[number];
+            const std::byte* const block = looker.Read(id, thread);
+            parts[static_cast<std::size_t>(thread)].CountBrick(
+              lattice.GetCellsOfBrick(id), lattice.GetCells(), block, limits);
+          });
+        for (const LimitedSurvey& part : parts)
+        {
+          sum.Add(part);
+        }
+      });
+    return AddSurveys(sum, messenger);
+  };
+  this->Survey = bricks::LeaveOutFills(this->Survey, { &this->Bricks }, look);
 }
 
 } // namespace bricks

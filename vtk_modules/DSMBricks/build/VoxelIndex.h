@@ -23,7 +23,7 @@ namespace bricks
 struct VoxelIndex
 {
   std::vector<ValueRange> Bricks;       ///< by id
-  IsovalueSurvey Survey;                ///< over all bricks
+  IsovalueSurvey Survey;                ///< over all bricks, until LeaveOutFills
   std::vector<dsm::ByteDigest> Digests; ///< digests of the bricks' bytes, by id
 
   /// Which bricks are not known to have the same bytes in both, of as many.
@@ -53,6 +53,12 @@ struct VoxelIndex
   /// Error on every rank.
   static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
+
+  /// Collective: leaves fill values that nothing declares out of the survey (FillValues.h). Reads bricks only if the
+  /// survey and the ranges of the bricks leave it open whether there are any, and then at most 128 of them, evenly spread;
+  /// the survey is of these then. Errors as those of Find.
+  void LeaveOutFills(dsm::Messenger& messenger, const BrickLattice& lattice,
+    const dsm::BlockReader& reader, int threads);
 
 private:
   /// Returns whether Find can have produced these numbers, which may come from a file.

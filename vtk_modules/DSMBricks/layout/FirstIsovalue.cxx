@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/layout/FirstIsovalue.h"
 
-#include "DSMBricks/layout/IsovalueSurvey.h"
+#include "DSMBricks/layout/FillValues.h"
 
 #include <algorithm>
 #include <array>
@@ -55,11 +55,11 @@ std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& s
   return worths;
 }
 
-/// Collective. Surveys the fields that have no survey yet.
-IsovalueSurvey LookThrough(
-  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger)
+/// Collective. Surveys the fields that have no survey yet, within limits.
+LimitedSurvey LookThrough(const std::vector<std::shared_ptr<const VoxelField>>& fields,
+  dsm::Messenger& messenger, const ValueLimits& limits)
 {
-  IsovalueSurvey mine;
+  LimitedSurvey mine;
   messenger.RunTogether("Surveying the macrocells",
     [&]
     {
@@ -67,55 +67,34 @@ IsovalueSurvey LookThrough(
       {
         if (field && !field->Survey)
         {
+          const BrickLattice& lattice = field->Lattice;
           field->Segment->ForEachResident([&](dsm::BlockId id, const std::byte* block, std::size_t)
-            { mine.CountBrick(field->Lattice, id, block); });
+            { mine.CountBrick(lattice.GetCellsOfBrick(id), lattice.GetCells(), block, limits); });
         }
       }
     });
-  IsovalueSurvey all;
-  for (const IsovalueSurvey& one : messenger.AllGatherValue(mine))
-  {
-    all.Add(one);
-  }
-  return all;
+  return AddSurveys(mine, messenger);
 }
 
-} // namespace
-
-std::optional<double> FindFirstIsovalue(
-  const std::vector<std::shared_ptr<const VoxelField>>& fields, dsm::Messenger& messenger,
-  const IsovalueSurvey* others)
+/// Adds a survey that cannot be divided; if any of its values are beyond the limits, all are.
+void AddWhole(const IsovalueSurvey& survey, const ValueLimits& limits, LimitedSurvey& sum)
 {
-  // The same on every rank.
-  const auto isAny = [&](const auto& holds)
+  sum.All += survey.All;
+  if (limits.Hold(survey.Least, survey.Greatest))
   {
-    return std::any_of(
-      fields.begin(), fields.end(), [&](const auto& field) { return field && holds(*field); });
-  };
-  const auto mayHaveSurface = [](const VoxelField& field)
-  { return field.Hierarchy.GetRange().First < field.Hierarchy.GetRange().Last; };
-  if (!isAny(mayHaveSurface) && !(others && others->Least < others->Greatest))
-  {
-    return std::nullopt;
+    sum.Within.Add(survey);
   }
-  IsovalueSurvey all;
-  if (isAny([](const VoxelField& field) { return !field.Survey; }))
+  else if (survey.Least == survey.Greatest)
   {
-    all = LookThrough(fields, messenger);
+    sum.Constant += survey.All;
   }
-  for (const auto& field : fields)
-  {
-    if (field && field->Survey)
-    {
-      all.Add(*field->Survey);
-    }
-  }
-  if (others)
-  {
-    all.Add(*others);
-  }
-  all.Accumulate();
-  const auto worths = FindWorths(all);
+}
+
+/// Returns the isovalue of most worth.
+std::optional<double> Choose(IsovalueSurvey survey)
+{
+  survey.Accumulate();
+  const auto worths = FindWorths(survey);
   const auto best = std::max_element(worths.begin(), worths.end());
   if (*best <= 0.0)
   {
@@ -130,7 +109,53 @@ std::optional<double> FindFirstIsovalue(
   const auto last = std::find_if_not(best, worths.end(), isAsGood) - 1;
   const double border =
     0.5 * static_cast<double>((first - worths.begin()) + (last - worths.begin()));
-  return all.GetBorder(border);
+  return survey.GetBorder(border);
+}
+
+} // namespace
+
+FirstLook FindFirstLook(const std::vector<std::shared_ptr<const VoxelField>>& fields,
+  dsm::Messenger& messenger, const IsovalueSurvey* others)
+{
+  // The same on every rank.
+  const auto isAny = [&](const auto& holds)
+  {
+    return std::any_of(
+      fields.begin(), fields.end(), [&](const auto& field) { return field && holds(*field); });
+  };
+  const auto mayHaveSurface = [](const VoxelField& field)
+  { return field.Hierarchy.GetRange().First < field.Hierarchy.GetRange().Last; };
+  if (!isAny(mayHaveSurface) && !(others && others->Least < others->Greatest))
+  {
+    return {};
+  }
+  const bool isSurveyed = !isAny([](const VoxelField& field) { return !field.Survey; });
+  const auto look = [&](const ValueLimits& limits)
+  {
+    LimitedSurvey sum = isSurveyed ? LimitedSurvey() : LookThrough(fields, messenger, limits);
+    for (const auto& field : fields)
+    {
+      if (field && field->Survey)
+      {
+        AddWhole(*field->Survey, limits, sum);
+      }
+    }
+    if (others)
+    {
+      AddWhole(*others, limits, sum);
+    }
+    return sum;
+  };
+  std::vector<const std::vector<ValueRange>*> bricks;
+  for (const auto& field : fields)
+  {
+    if (field)
+    {
+      bricks.push_back(&field->Hierarchy.GetLevels().front().Ranges);
+    }
+  }
+  const IsovalueSurvey survey = LeaveOutFills(look({}).Within, bricks, look);
+  return { Choose(survey), { survey.Least, survey.Greatest } };
 }
 
 } // namespace bricks

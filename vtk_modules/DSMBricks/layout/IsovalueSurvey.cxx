@@ -47,7 +47,7 @@ std::int64_t FindExponent(double least, double greatest)
   return exponent;
 }
 
-/// Calls visit(range, macrocell, atBorder) for the macrocells of a brick that hold data.
+/// Calls visit(range, atBorder) for the macrocells of a brick that hold data.
 template <class T, class Visit>
 void ForEachMacrocell(
   const VoxelBrick<T>& brick, const Box& cells, const Index3& end, const Visit& visit)
@@ -190,16 +190,28 @@ void IsovalueSurvey::CountBrick(
   this->CountBrick(lattice.GetCellsOfBrick(id), lattice.GetCells(), block);
 }
 
-void IsovalueSurvey::CountBrick(const Box& cells, const Index3& end, const std::byte* block)
+void IsovalueSurvey::CountBrick(
+  const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits)
 {
   Dispatch(reinterpret_cast<const VoxelBrickHeader*>(block)->Type,
     [&](auto sample)
     {
       using T = decltype(sample);
       const VoxelBrick<T> brick(block);
+      const auto forEach = [&](const auto& visit)
+      {
+        ForEachMacrocell(brick, cells, end,
+          [&](const MacrocellRange<T>& range, bool atBorder)
+          {
+            if (limits.Hold(static_cast<double>(range.Min), static_cast<double>(range.Max)))
+            {
+              visit(range, atBorder);
+            }
+          });
+      };
       double least = std::numeric_limits<double>::max();
       double greatest = std::numeric_limits<double>::lowest();
-      ForEachMacrocell(brick, cells, end,
+      forEach(
         [&](const MacrocellRange<T>& range, bool)
         {
           least = std::min(least, static_cast<double>(range.Min));
@@ -213,7 +225,7 @@ void IsovalueSurvey::CountBrick(const Box& cells, const Index3& end, const std::
       const double perWidth = std::ldexp(1.0, static_cast<int>(-this->Exponent));
       const auto find = [&](double value)
       { return static_cast<std::size_t>(FindInterval(value, perWidth) - this->First); };
-      ForEachMacrocell(brick, cells, end,
+      forEach(
         [&](const MacrocellRange<T>& range, bool atBorder)
         {
           const auto min = static_cast<double>(range.Min);
@@ -235,6 +247,32 @@ void IsovalueSurvey::CountBrick(const Box& cells, const Index3& end, const std::
           }
         });
     });
+}
+
+void LimitedSurvey::CountBrick(
+  const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits)
+{
+  this->Within.CountBrick(cells, end, block, limits);
+  Dispatch(reinterpret_cast<const VoxelBrickHeader*>(block)->Type,
+    [&](auto sample)
+    {
+      using T = decltype(sample);
+      ForEachMacrocell(VoxelBrick<T>(block), cells, end,
+        [&](const MacrocellRange<T>& range, bool)
+        {
+          const auto min = static_cast<double>(range.Min);
+          const auto max = static_cast<double>(range.Max);
+          ++this->All;
+          this->Constant += min == max && !limits.Hold(min, max) ? 1 : 0;
+        });
+    });
+}
+
+void LimitedSurvey::Add(const LimitedSurvey& other)
+{
+  this->Within.Add(other.Within);
+  this->All += other.All;
+  this->Constant += other.Constant;
 }
 
 void IsovalueSurvey::Add(const IsovalueSurvey& other)

@@ -13,6 +13,19 @@
 namespace bricks
 {
 
+/// Closed interval of values. Plain.
+struct ValueLimits
+{
+  double Least = -std::numeric_limits<double>::infinity();
+  double Greatest = std::numeric_limits<double>::infinity();
+
+  /// Returns whether all values from `least` to `greatest` are within.
+  bool Hold(double least, double greatest) const
+  {
+    return least >= this->Least && greatest <= this->Greatest;
+  }
+};
+
 /// Histogram of a volume's macrocells over their values, in intervals of equal width; FindFirstIsovalue uses
 /// it. The range of the values need not be known before: intervals are 2^Exponent wide, begin at multiples of
 /// that, and become wider when values outside of them are added. So the result depends on the counted values
@@ -30,8 +43,10 @@ struct IsovalueSurvey
 
   /// Counts the macrocells of a brick.
   void CountBrick(const BrickLattice& lattice, dsm::BlockId id, const std::byte* block);
-  /// The same of a brick of these cells, of a lattice of cells from 0 to `end`.
-  void CountBrick(const Box& cells, const Index3& end, const std::byte* block);
+  /// The same of a brick of these cells, of a lattice of cells from 0 to `end`. Macrocells that have
+  /// values beyond the limits do not count.
+  void CountBrick(
+    const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits = {});
   /// Both surveys must be valid.
   void Add(const IsovalueSurvey& other);
   /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.
@@ -57,6 +72,19 @@ private:
   /// Intervals reach from `least` to `greatest` then, too.
   void Reach(double least, double greatest);
   void Widen(std::int64_t exponent);
+};
+
+/// Survey of the macrocells whose values are all within limits. Plain, for messages between ranks.
+struct LimitedSurvey
+{
+  IsovalueSurvey Within;
+  std::int64_t All = 0;      ///< macrocells, also those that are not within
+  std::int64_t Constant = 0; ///< macrocells beyond the limits that have one value only
+
+  /// Counts the macrocells of a brick, as IsovalueSurvey::CountBrick does.
+  void CountBrick(
+    const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits);
+  void Add(const LimitedSurvey& other);
 };
 
 } // namespace bricks

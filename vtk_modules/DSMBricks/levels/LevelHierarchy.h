@@ -30,6 +30,8 @@ public:
   {
     return this->Ranges[static_cast<std::size_t>(id)];
   }
+  /// Returns the ranges of the bricks, by their numbers.
+  const std::vector<ValueRange>& GetRanges() const { return this->Ranges; }
   /// Returns the range of all bricks.
   const ValueRange& GetRange() const { return this->All; }
   /// The number of the brick that a leaf refers to.

@@ -18,7 +18,7 @@ struct LevelVoxels
   LevelLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
   LevelHierarchy Hierarchy;
-  IsovalueSurvey Survey; ///< of all bricks, the same on every rank
+  IsovalueSurvey Survey; ///< of all bricks, without fills (FillValues.h); the same on every rank
 };
 
 } // namespace bricks

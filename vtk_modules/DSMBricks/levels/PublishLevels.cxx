@@ -2,6 +2,7 @@
 #include "DSMBricks/levels/PublishLevels.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/layout/FillValues.h"
 #include "DSMBricks/layout/MacrocellBuilder.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMBricks/layout/VoxelBrickHeader.h"
@@ -446,18 +447,27 @@ private:
   std::size_t Done = 0;
 };
 
-/// Of this rank's bricks.
-IsovalueSurvey Survey(const LevelVoxels& voxels)
+/// Collective. Surveys the bricks, without the fill values that nothing declares.
+IsovalueSurvey Survey(const LevelVoxels& voxels, dsm::Messenger& messenger)
 {
-  IsovalueSurvey survey;
-  const Index3 end(glm::ceil(voxels.Lattice.GetBounds()[1]));
-  voxels.Segment->ForEachResident(
-    [&](dsm::BlockId id, const std::byte* block, std::size_t)
-    {
-      const LevelBrick& brick = voxels.Lattice.GetBrick(id);
-      survey.CountBrick(brick.Cells, end * voxels.Lattice.GetScales().Get(brick.Level), block);
-    });
-  return survey;
+  const auto look = [&](const ValueLimits& limits)
+  {
+    LimitedSurvey mine;
+    messenger.RunTogether("Surveying the levels",
+      [&]
+      {
+        const Index3 end(glm::ceil(voxels.Lattice.GetBounds()[1]));
+        voxels.Segment->ForEachResident(
+          [&](dsm::BlockId id, const std::byte* block, std::size_t)
+          {
+            const LevelBrick& brick = voxels.Lattice.GetBrick(id);
+            const Index3 scale = voxels.Lattice.GetScales().Get(brick.Level);
+            mine.CountBrick(brick.Cells, end * scale, block, limits);
+          });
+      });
+    return AddSurveys(mine, messenger);
+  };
+  return LeaveOutFills(look({}).Within, { &voxels.Hierarchy.GetRanges() }, look);
 }
 
 } // namespace
@@ -509,17 +519,9 @@ std::shared_ptr<LevelVoxels> PublishLevels(std::string_view what, const LevelLat
   try
   {
     std::vector<ValueRange> ranges = MacrocellHierarchy::GatherRanges(*voxels->Segment, messenger);
-    IsovalueSurvey mine;
-    messenger.RunTogether(what,
-      [&]
-      {
-        voxels->Hierarchy = LevelHierarchy(lattice, std::move(ranges));
-        mine = Survey(*voxels);
-      });
-    for (const IsovalueSurvey& one : messenger.AllGatherValue(mine))
-    {
-      voxels->Survey.Add(one);
-    }
+    messenger.RunTogether(
+      what, [&] { voxels->Hierarchy = LevelHierarchy(lattice, std::move(ranges)); });
+    voxels->Survey = Survey(*voxels, messenger);
   }
   catch (...) // on every rank
   {

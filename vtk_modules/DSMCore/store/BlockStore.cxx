@@ -29,6 +29,9 @@ namespace
 /// nothing: the rest is for the application.
 constexpr std::uint64_t DefaultDivisor = 2;
 
+/// The default is no less: where a host's memory is nearly used up, small data are shown still.
+constexpr std::uint64_t LeastDefaultBytes = std::uint64_t(64) << 20;
+
 /// The time that it takes to put blocks together in a scratch file, as a part of all.
 constexpr double ShareOfFilling = 0.6;
 
@@ -176,7 +179,8 @@ void BlockStore::FindBudget()
     this->AvailableBytes = std::max<std::uint64_t>(
       GetAvailableHostMemory() / static_cast<std::uint64_t>(this->Messages.GetRanksOnHost()), 1);
   }
-  this->Budget = { this->AvailableBytes / DefaultDivisor, this->AvailableBytes };
+  this->Budget = { std::max(this->AvailableBytes / DefaultDivisor, LeastDefaultBytes),
+    std::max(this->AvailableBytes, LeastDefaultBytes) };
 }
 
 BlockStore::Decision BlockStore::Decide(

@@ -277,10 +277,12 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   std::string text = replicated ? "A copy of all data on every rank takes "
     : allOnDisk ? "Data on a disk need memory for tables, messages and a few bricks, which takes "
                 : "The data owned by rank " + std::to_string(rank) + " take ";
+  const std::uint64_t limit = replicated ? budget.Bytes : budget.Limit;
+  const bool looksEqual = FormatMebibytes(need) == FormatMebibytes(limit);
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
     (replicated || allOnDisk ? "" : ", including a cache of one brick and messages") +
-    ") of rank " + std::to_string(rank) + "'s memory. The limit is " +
-    FormatMebibytes(replicated ? budget.Bytes : budget.Limit) +
+    ") of rank " + std::to_string(rank) + "'s memory. The limit is " + FormatMebibytes(limit) +
+    (looksEqual ? " (" + std::to_string(limit) + " bytes)" : "") +
     ". Raise the memory per rank (DSMMemory), " +
     (this->AnyOnOwnersDisk || allOnDisk
         ? ""

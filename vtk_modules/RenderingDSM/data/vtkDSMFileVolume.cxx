@@ -558,22 +558,24 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   std::optional<bricks::VoxelIndex> known;
   messenger.RunTogether(
     what, [&] { known = bricks::VoxelIndex::Decode(bytes, lattice.GetBrickCount()); });
+  std::shared_ptr<const dsm::BlockReader> reader;
+  messenger.RunTogether(what, [&] { reader = this->CreateReader(lattice, false); });
   if (known)
   {
+    known->LeaveOutFills(messenger, lattice, *reader, threads);
     return std::move(*known);
   }
   bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
   pass.Seen = seen && !this->HasOwnMissing() ? &*seen : nullptr;
-  std::shared_ptr<const dsm::BlockReader> reader;
   messenger.RunTogether(what,
     [&]
     {
-      reader = this->CreateReader(lattice, false);
       pass.Order = vol::OrderBricks(lattice, { bricks::Index3(0), lattice.GetBricks() },
         this->Values->GetArray(), this->Values->GetBox().Min);
     });
   bricks::VoxelIndex found = bricks::VoxelIndex::Find(messenger, lattice, *reader, pass, progress);
+  found.LeaveOutFills(messenger, lattice, *reader, threads);
   dsm::FreedMemory::Return(); // memory of the threads that examined bricks
   messenger.RunTogether(what,
     [&]

@@ -181,7 +181,12 @@ void vtkDSMImageArrays::Refuse(
   }
   if (is(State::NoSuchComponent))
   {
-    throw dsm::Error(array + " has no component " + std::to_string(choice.Component) + ".");
+    const int components = this->CountComponents(choice);
+    throw dsm::Error(array +
+      (components > 1 ? " has the components 0 to " + std::to_string(components - 1) + ", and " +
+            std::to_string(components) + " for the magnitude"
+                      : std::string(" has the component 0 only")) +
+      ". Choose one of these.");
   }
   if (is(State::WrongLength))
   {

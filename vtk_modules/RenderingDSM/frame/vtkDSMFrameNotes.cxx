@@ -5,9 +5,11 @@
 
 #include "vtkImageData.h"
 #include "vtkNew.h"
+#include "vtkRenderer.h"
 #include "vtkStdString.h" // IWYU pragma: keep
 #include "vtkTextProperty.h"
 #include "vtkTextRenderer.h"
+#include "vtkWindow.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,44 +17,70 @@
 namespace
 {
 
-constexpr int DotsPerInch = 72;
-constexpr int FontSize = 13;
-/// Pixels.
-constexpr int Border = 6;
-constexpr int SwatchWidth = 18;
+constexpr int FontSize = 13; ///< points
 /// More would cover the picture.
 constexpr std::size_t MostEntries = 16;
 
 const glm::vec3 PanelColor(0.12f);
 
-void SetPixel(rt::Picture& picture, int x, int y, const glm::vec3& color)
+/// The part of a view that a picture shows. Coordinates are pixels of the view.
+struct Canvas
 {
-  const std::size_t pixel = static_cast<std::size_t>(y) * picture.Width + x;
-  for (int channel = 0; channel < 3; ++channel)
+  Canvas(const vtkDSMFrameNotes::Place& place, rt::Picture& picture)
+    : Place(place)
+    , Picture(picture)
+    , Border(this->ToPixels(6))
+    , SwatchWidth(this->ToPixels(18))
   {
-    picture.Color[4 * pixel + channel] =
-      static_cast<std::uint8_t>(255.0f * glm::clamp(color[channel], 0.0f, 1.0f) + 0.5f);
   }
-  picture.Color[4 * pixel + 3] = 255;
-  picture.Depth[pixel] = 0.0f;
-}
 
-void Fill(rt::Picture& picture, int x, int y, int width, int height, const glm::vec3& color)
-{
-  for (int row = 0; row < height; ++row)
+  int ToPixels(int points) const { return std::max(1, points * this->Place.DotsPerInch / 72); }
+  bool Fits(int width, int height) const
   {
-    for (int column = 0; column < width; ++column)
+    return width + 2 * this->Border <= this->Place.Width &&
+      height + 2 * this->Border <= this->Place.Height;
+  }
+
+  void SetPixel(int x, int y, const glm::vec3& color)
+  {
+    x -= this->Place.Left;
+    y -= this->Place.Bottom;
+    if (x < 0 || y < 0 || x >= this->Picture.Width || y >= this->Picture.Height)
     {
-      SetPixel(picture, x + column, y + row, color);
+      return;
+    }
+    const std::size_t pixel = static_cast<std::size_t>(y) * this->Picture.Width + x;
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      this->Picture.Color[4 * pixel + channel] =
+        static_cast<std::uint8_t>(255.0f * glm::clamp(color[channel], 0.0f, 1.0f) + 0.5f);
+    }
+    this->Picture.Color[4 * pixel + 3] = 255;
+    this->Picture.Depth[pixel] = 0.0f;
+  }
+
+  void Fill(int x, int y, int width, int height, const glm::vec3& color)
+  {
+    for (int row = 0; row < height; ++row)
+    {
+      for (int column = 0; column < width; ++column)
+      {
+        this->SetPixel(x + column, y + row, color);
+      }
     }
   }
-}
+
+  const vtkDSMFrameNotes::Place& Place;
+  rt::Picture& Picture;
+  const int Border;
+  const int SwatchWidth;
+};
 
 /// Text as an image of its own.
 class Lines
 {
 public:
-  explicit Lines(const std::string& text)
+  Lines(const std::string& text, const Canvas& canvas)
   {
     vtkNew<vtkTextProperty> look;
     look->SetFontFamilyToCourier();
@@ -62,7 +90,8 @@ public:
     look->SetVerticalJustificationToBottom();
     vtkTextRenderer* renderer = vtkTextRenderer::GetInstance();
     if (!renderer || text.empty() ||
-      !renderer->RenderString(look, text.c_str(), this->Image, this->Size, DotsPerInch))
+      !renderer->RenderString(
+        look, text.c_str(), this->Image, this->Size, canvas.Place.DotsPerInch))
     {
       this->Size[0] = this->Size[1] = 0;
     }
@@ -73,7 +102,7 @@ public:
   int GetHeight() const { return this->Size[1]; }
 
   /// Lower left corner at (x, y), over the panel's color.
-  void Draw(rt::Picture& picture, int x, int y) const
+  void Draw(Canvas& canvas, int x, int y) const
   {
     // The text's lower left corner: some fonts and sizes put it below 0.
     const int* const first = this->Image->GetExtent();
@@ -84,7 +113,7 @@ public:
         const auto* ink = static_cast<const std::uint8_t*>(
           this->Image->GetScalarPointer(first[0] + column, first[2] + row, 0));
         const glm::vec3 color = glm::vec3(ink[0], ink[1], ink[2]) / 255.0f;
-        SetPixel(picture, x + column, y + row, glm::mix(PanelColor, color, ink[3] / 255.0f));
+        canvas.SetPixel(x + column, y + row, glm::mix(PanelColor, color, ink[3] / 255.0f));
       }
     }
   }
@@ -94,34 +123,30 @@ private:
   int Size[2] = { 0, 0 };
 };
 
-bool Fits(const rt::Picture& picture, int width, int height)
+void DrawText(const std::string& text, Canvas& canvas)
 {
-  return width + 2 * Border <= picture.Width && height + 2 * Border <= picture.Height;
-}
-
-void DrawText(const std::string& text, rt::Picture& picture)
-{
-  const Lines lines(text);
-  const int width = lines.GetWidth() + 2 * Border;
-  const int height = lines.GetHeight() + 2 * Border;
-  if (lines.IsEmpty() || !Fits(picture, width, height))
+  const Lines lines(text, canvas);
+  const int border = canvas.Border;
+  const int width = lines.GetWidth() + 2 * border;
+  const int height = lines.GetHeight() + 2 * border;
+  if (lines.IsEmpty() || !canvas.Fits(width, height))
   {
     return;
   }
-  const int bottom = picture.Height - Border - height;
-  Fill(picture, Border, bottom, width, height, PanelColor);
-  lines.Draw(picture, 2 * Border, bottom + Border);
+  const int bottom = canvas.Place.Height - border - height;
+  canvas.Fill(border, bottom, width, height, PanelColor);
+  lines.Draw(canvas, 2 * border, bottom + border);
 }
 
-void DrawLegend(const std::vector<vtkDSMFrameNotes::Entry>& legend, rt::Picture& picture)
+void DrawLegend(const std::vector<vtkDSMFrameNotes::Entry>& legend, Canvas& canvas)
 {
   std::vector<Lines> texts;
   texts.reserve(legend.size());
   int textWidth = 0;
-  int line = FontSize;
+  int line = canvas.ToPixels(FontSize);
   for (const auto& entry : legend)
   {
-    texts.emplace_back(entry.Text);
+    texts.emplace_back(entry.Text, canvas);
     if (texts.back().IsEmpty())
     {
       return;
@@ -129,19 +154,20 @@ void DrawLegend(const std::vector<vtkDSMFrameNotes::Entry>& legend, rt::Picture&
     textWidth = std::max(textWidth, texts.back().GetWidth());
     line = std::max(line, texts.back().GetHeight());
   }
-  const int step = line + Border / 2;
-  const int width = SwatchWidth + textWidth + 3 * Border;
-  const int height = static_cast<int>(legend.size()) * step + 2 * Border;
-  if (legend.empty() || !Fits(picture, width, height))
+  const int border = canvas.Border;
+  const int step = line + border / 2;
+  const int width = canvas.SwatchWidth + textWidth + 3 * border;
+  const int height = static_cast<int>(legend.size()) * step + 2 * border;
+  if (legend.empty() || !canvas.Fits(width, height))
   {
     return;
   }
-  Fill(picture, Border, Border, width, height, PanelColor);
+  canvas.Fill(border, border, width, height, PanelColor);
   for (std::size_t number = 0; number < legend.size(); ++number)
   {
-    const int y = Border + height - Border - static_cast<int>(number + 1) * step;
-    Fill(picture, 2 * Border, y, SwatchWidth, line, legend[number].Color);
-    texts[number].Draw(picture, 3 * Border + SwatchWidth, y);
+    const int y = height - static_cast<int>(number + 1) * step;
+    canvas.Fill(2 * border, y, canvas.SwatchWidth, line, legend[number].Color);
+    texts[number].Draw(canvas, 3 * border + canvas.SwatchWidth, y);
   }
 }
 
@@ -208,9 +234,37 @@ std::vector<vtkDSMFrameNotes::Entry> vtkDSMFrameNotes::CreateLegend(
   return legend;
 }
 
-void vtkDSMFrameNotes::Draw(
-  const std::string& text, const std::vector<Entry>& legend, rt::Picture& picture)
+vtkDSMFrameNotes::Place vtkDSMFrameNotes::FindPlace(
+  vtkRenderer* renderer, const rt::Picture& picture)
 {
-  DrawText(text, picture);
-  DrawLegend(legend, picture);
+  Place place;
+  place.Width = picture.Width;
+  place.Height = picture.Height;
+  vtkWindow* const window = renderer->GetVTKWindow();
+  place.DotsPerInch = window->GetDPI();
+  const int* const tiles = window->GetTileScale();
+  if (tiles[0] * tiles[1] > 1)
+  {
+    const double* const tile = window->GetTileViewport();
+    const double* const view = renderer->GetViewport();
+    const int* const whole = window->GetSize(); // all tiles
+    const auto toPixels = [&](int axis, double part)
+    { return static_cast<int>(part * whole[axis] + 0.5); };
+    place.Width = toPixels(0, view[2] - view[0]);
+    place.Height = toPixels(1, view[3] - view[1]);
+    place.Left = toPixels(0, std::max(tile[0] - view[0], 0.0));
+    place.Bottom = toPixels(1, std::max(tile[1] - view[1], 0.0));
+  }
+  return place;
+}
+
+void vtkDSMFrameNotes::Draw(const std::string& text, const std::vector<Entry>& legend,
+  const Place& place, rt::Picture& picture)
+{
+  if (picture.Width > 0)
+  {
+    Canvas canvas(place, picture);
+    DrawText(text, canvas);
+    DrawLegend(legend, canvas);
+  }
 }

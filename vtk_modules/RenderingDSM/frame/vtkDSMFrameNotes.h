@@ -9,6 +9,7 @@
 #include <vector>
 
 class vtkDSMStatistics;
+class vtkRenderer;
 
 /// Annotations in the image: the figures of the frame, and the legend of a debug view's colors.
 /// They are pixels nearer than anything else, so they reach the screen the same way as the image.
@@ -25,9 +26,24 @@ public:
   /// Creates the legend of a debug view's colors; ranks are those of `statistics`.
   static std::vector<Entry> CreateLegend(rt::DebugView view, const vtkDSMStatistics* statistics);
 
-  /// Each into a corner on the left: the text above, the legend below. What is empty, or does not fit,
-  /// is left out, all of it where the application has no text renderer (VTK's RenderingFreeType).
-  static void Draw(const std::string& text, const std::vector<Entry>& legend, rt::Picture& picture);
+  /// Where a picture lies in its view, in pixels. They differ where a screenshot is larger than the window, so that the
+  /// application renders it tile by tile.
+  struct Place
+  {
+    int Width = 0; ///< of the whole view
+    int Height = 0;
+    int Left = 0; ///< lower left pixel of the picture in the whole view
+    int Bottom = 0;
+    int DotsPerInch = 72; ///< of the view: scales the text as VTK's own
+  };
+  /// Local.
+  static Place FindPlace(vtkRenderer* renderer, const rt::Picture& picture);
+
+  /// Each into a corner of the view on the left: the text above, the legend below; the picture gets its part of them.
+  /// What is empty, or does not fit the view, is left out, all of it where the application has no text renderer (VTK's
+  /// RenderingFreeType).
+  static void Draw(const std::string& text, const std::vector<Entry>& legend, const Place& place,
+    rt::Picture& picture);
 };
 
 #endif

@@ -54,6 +54,16 @@ bool AreAlike(const bricks::ValueRange& one, const bricks::ValueRange& other)
     getWidth(std::min(one.First, other.First), std::max(one.Last, other.Last));
 }
 
+/// Returns whether the values are a part of the range only, since the others are fills.
+bool HasFills(const bricks::ValueLimits& values, const bricks::ValueRange& range)
+{
+  constexpr double leastGap = 0.1; // of their range; FillValues.h
+  const double gap = leastGap * (values.Greatest - values.Least);
+  return values.Least <= values.Greatest &&
+    (values.Least - static_cast<double>(range.First) > gap ||
+      static_cast<double>(range.Last) - values.Greatest > gap);
+}
+
 } // namespace
 
 bool vtkDSMSceneVolume::HasNewData()
@@ -420,10 +430,16 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
         ofLevels->Add(levels->Survey);
       }
     }
-    this->Suggested = bricks::FindFirstIsovalue(
+    const bricks::FirstLook look = bricks::FindFirstLook(
       this->GetIso()->GetFields(), messenger, ofLevels ? &*ofLevels : nullptr);
+    this->Suggested = look.Isovalue;
+    this->ValuesWithoutFills = HasFills(look.Values, range)
+      ? std::optional(std::array<double, 2>{ look.Values.Least, look.Values.Greatest })
+      : std::nullopt;
   }
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
+  this->Mapper->SetSuggestedRange(
+    this->ValuesWithoutFills.value_or(std::array<double, 2>{ vtkMath::Nan(), vtkMath::Nan() }));
 }
 
 std::shared_ptr<const bricks::VoxelField> vtkDSMSceneVolume::GetColorValues(

@@ -10,6 +10,7 @@
 
 #include "vtkType.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -190,7 +191,8 @@ private:
   std::vector<std::shared_ptr<Published>> Arrays;
   /// Publications of the previous values, during Update.
   std::vector<std::shared_ptr<Published>> Stale;
-  std::optional<double> Suggested; ///< isovalue
+  std::optional<double> Suggested;                         ///< isovalue
+  std::optional<std::array<double, 2>> ValuesWithoutFills; ///< their range, if there are fills
   vtkDSMVolumeData::Choice SuggestedFor;
   bricks::ValueRange SuggestedFrom{}; ///< range of the values that suggested it
   /// One for each of the arrays.

@@ -21,6 +21,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 #include <algorithm>
 #include <cmath>
@@ -319,7 +320,10 @@ vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetIsoChoice(const vtkDSMImageArrays&
 vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetNamedIsoChoice() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
-  const int component = mapper->GetIsoComponent();
+  // The number that stands for colors is no component of an isosurface array.
+  constexpr int none = std::numeric_limits<int>::min();
+  const int component =
+    mapper->GetIsoComponent() >= vtkDSMImagePiece::Magnitude ? mapper->GetIsoComponent() : none;
   if (!mapper->GetIsoArray().empty() || !(this->IsLikeRayCastMapper() || this->IsMedium()))
   {
     return { mapper->GetIsoArray(), component, mapper->GetIsoArrayOnCells() };

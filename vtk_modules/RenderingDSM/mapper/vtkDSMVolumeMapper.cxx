@@ -350,6 +350,11 @@ void vtkDSMVolumeMapper::SetSuggestedIsoValue(double value)
   this->SuggestedIsoValue = value;
 }
 
+void vtkDSMVolumeMapper::SetSuggestedRange(const std::array<double, 2>& range)
+{
+  std::copy(range.begin(), range.end(), this->SuggestedRange);
+}
+
 void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
 {
   if (this->GetNumberOfInputConnections(0) == 0)
@@ -511,6 +516,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
+  os << indent << "SuggestedRange: " << this->SuggestedRange[0] << " " << this->SuggestedRange[1]
+     << "\n";
   os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
   os << indent << "Scattering: " << this->Scattering << "\n";
   os << indent << "OpacityArray: " << this->OpacityArray << "\n";

@@ -42,6 +42,7 @@
 #include "vtkSmartPointer.h"       // for ivars
 #include "vtkVolumeMapper.h"
 
+#include <array>   // for ivars
 #include <memory>  // for ivars
 #include <string>  // for ivars
 #include <utility> // for ivars
@@ -152,6 +153,13 @@ public:
    * the first frame, and where the data have no surface at any value.
    */
   vtkGetMacro(SuggestedIsoValue, double);
+
+  /**
+   * Range of the values of the last frame, if the array has fill values that nothing declares (such as 1e20, or
+   * -32768 where the others are far from it). They do not count for SuggestedIsoValue. Not a number before the
+   * first frame, and where there are none.
+   */
+  vtkGetVector2Macro(SuggestedRange, double);
 
   ///@{
   /**
@@ -383,6 +391,7 @@ public:
    */
   void SetGlobalBounds(const double bounds[6]);
   void SetSuggestedIsoValue(double value);
+  void SetSuggestedRange(const std::array<double, 2>& range);
 
   /**
    * Brings the input up to date; each rank asks its pipeline for its own piece.
@@ -507,6 +516,7 @@ private:
   std::vector<double> IsoValues;
   bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
+  double SuggestedRange[2] = { vtkMath::Nan(), vtkMath::Nan() };
   bool SurfacesOnly = false;
   double Scattering = 0.0;
   std::string OpacityArray;

@@ -52,7 +52,7 @@ dsm_setting(HostSharing OWNER ranks TYPE bool DEFAULT 1
   TEXT "Ranks on one host read each other's bricks in place, without a copy or a message. Has no effect when page based. Off: each rank behaves as if it ran on a host of its own.")
 dsm_setting(Memory OWNER ranks TYPE int DEFAULT 0 RANGE 0
   LABEL "Memory (MiB per Rank)"
-  TEXT "Memory limit of each rank in MiB, for its own bricks, copies and the cache. 0 uses half of the host's available memory, divided by the ranks on the host.")
+  TEXT "Memory limit of each rank in MiB, for its own bricks, copies and the cache. 0 uses half of the host's available memory, divided by the ranks on the host, and at least 64 MiB.")
 dsm_setting(ScratchDirectory OWNER ranks TYPE directory
   LABEL "Scratch Directory"
   TEXT "Directory on a local disk of each rank's node, such as /scratch. Bricks that exceed the memory limit go to a file there and are loaded on demand. The file disappears with the process. Empty: such data are refused with an error. The picture is the same.")

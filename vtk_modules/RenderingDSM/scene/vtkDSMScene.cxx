@@ -460,7 +460,7 @@ bool vtkDSMScene::TraceFrame()
   }
   for (const auto& member : self.Members.GetShown())
   {
-    member.State->ReportMessages();
+    member.State->ReportMessages(!self.Group || self.Group->GetMessenger().GetRank() == 0);
   }
   // One that other settings do not mend is told again: whoever has changed them shall know.
   const unsigned version = self.Group ? self.Group->GetSettingsVersion() : 0;

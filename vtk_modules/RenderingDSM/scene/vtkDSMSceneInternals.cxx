@@ -319,8 +319,8 @@ bool vtkDSMScene::Internals::WriteNotes(rt::DebugView view, rt::Picture& picture
   {
     legend = vtkDSMFrameNotes::CreateLegend(view, this->Statistics);
   }
-  vtkDSMFrameNotes::Draw(
-    showsStatistics ? this->Statistics->GetSummary() : std::string(), legend, picture);
+  vtkDSMFrameNotes::Draw(showsStatistics ? this->Statistics->GetSummary() : std::string(), legend,
+    vtkDSMFrameNotes::FindPlace(this->Renderer, picture), picture);
   return true;
 }
 

@@ -103,14 +103,14 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneMember::SampleColors(vtkScalarsTo
   return this->Colors;
 }
 
-void vtkDSMSceneMember::ReportMessages()
+void vtkDSMSceneMember::ReportMessages(bool tells)
 {
   std::vector<std::string> known = this->Reported;
-  const auto isNew = [&known](const std::string& message)
+  const auto isNew = [&known, tells](const std::string& message)
   {
     const bool isKnown = std::find(known.begin(), known.end(), message) != known.end();
     known.push_back(message); // AddTo may have said it more than once
-    return !isKnown;
+    return tells && !isKnown;
   };
   for (const std::string& message : this->Messages)
   {

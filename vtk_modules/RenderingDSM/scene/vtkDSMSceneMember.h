@@ -102,8 +102,8 @@ public:
   /// When a frame last showed it; on every rank in the same order.
   vtkMTimeType GetTimeShown() const { return this->Shown.GetMTime(); }
 
-  /// Reports the messages that are new since the last call.
-  void ReportMessages();
+  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells` them.
+  void ReportMessages(bool tells);
 
 protected:
   /// The table's colors; sampled again when it has changed.
