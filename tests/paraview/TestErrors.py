@@ -96,7 +96,7 @@ for method, value, words in (
     expect_then_delete(image_source(PLACED % (method, value)), [words])
 
 VECTOR = "image.SetExtent(piece)\nadd(image, np.stack(points(piece), axis=1), 'v')\n"
-expect_then_delete(image_source(VECTOR), ["'v' has no component 7"], array="v", DSMIsoComponent=7)
+expect_then_delete(image_source(VECTOR), ["'v' has the components 0 to 2, and 3 for the magnitude"], array="v", DSMIsoComponent=7)
 
 grid = simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid")
 grid.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % "0, 4, 0, 4, 0, 4"
