@@ -513,7 +513,9 @@ TEST(HostileZarr, PlacesThatAreNotFiniteAreRefused)
   write({ 1, 2 });
   EXPECT_EQ(ReadWatched(folder), "");
   write({ { { "type", "scale" }, { "scale", { "a", 1, 1 } } } });
-  ExpectRefusal(folder, { "invalid metadata" });
+  ExpectRefusal(folder, { "'scale' has 'a'", "not a finite number" });
+  WriteText(folder / ".zattrs", "{\"multiscales\": [{\"datasets\": 1}]}");
+  ExpectRefusal(folder, { "'datasets' is missing or not an array" });
   for (const char* text : { "[]", "1", "{\"ome\": 1}", "{\"ome\": []}", "{\"multiscales\": [1]}",
          "{\"multiscales\": [{\"datasets\": 1}]}", "{\"multiscales\": [{\"datasets\": [1]}]}",
          "{\"multiscales\": {\"a\": 1}}" })
@@ -521,6 +523,7 @@ TEST(HostileZarr, PlacesThatAreNotFiniteAreRefused)
     WriteText(folder / ".zattrs", text);
     const std::string wrong = ReadWatched(folder);
     EXPECT_TRUE(wrong.empty() || wrong.find("places") != std::string::npos) << wrong;
+    EXPECT_EQ(wrong.find("exception"), std::string::npos) << wrong;
   }
 }
 

@@ -88,8 +88,9 @@ private:
   std::vector<double> GetNumbers(const Json& one, const std::string& type) const
   {
     const std::string path = ZarrJson::GetText(this->Folder, one, "path");
-    std::vector<double> numbers =
-      path.empty() ? ZarrJson::ToNumbers(ZarrJson::Find(one, type.c_str())) : this->ReadFrom(path);
+    std::vector<double> numbers = path.empty()
+      ? ZarrJson::GetNumbers(this->Folder, one, type.c_str(), FileLimits::Axes)
+      : this->ReadFrom(path);
     const bool areFinite = std::all_of(
       numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
     if (numbers.empty() || !areFinite)

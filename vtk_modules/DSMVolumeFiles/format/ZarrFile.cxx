@@ -84,9 +84,9 @@ public:
         this->OpenArrays();
       }
     }
-    catch (const Json::exception& error)
+    catch (const Json::exception&)
     {
-      throw FileError(path, "has invalid metadata (" + std::string(error.what()) + ").");
+      throw FileError(path, "has invalid metadata: a member of 'multiscales' has a wrong type.");
     }
     this->Stamp = this->MakeStamp();
   }
@@ -188,7 +188,7 @@ private:
 
   void OpenScale(const Json& scale, const Json& ome, int level)
   {
-    const Json& datasets = scale.at("datasets");
+    const Json& datasets = ZarrJson::GetArray(this->Path, scale, "datasets");
     CheckLimit(this->Path, "levels of detail", datasets.size(), FileLimits::Levels);
     this->Levels = static_cast<int>(datasets.size());
     if (level < 0 || level >= this->Levels)

@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -104,15 +105,46 @@ std::string ZarrJson::GetText(
   return text;
 }
 
-std::vector<std::int64_t> ZarrJson::GetIntegers(const std::string& folder,
-  const nlohmann::json& object, const char* name, std::uint64_t count, std::int64_t least,
-  std::int64_t most)
+const nlohmann::json& ZarrJson::GetArray(
+  const std::string& folder, const nlohmann::json& object, const char* name)
 {
   const Json& found = Find(object, name);
   if (!found.is_array())
   {
     Refuse(folder, "its '" + std::string(name) + "' is missing or not an array.");
   }
+  return found;
+}
+
+std::vector<double> ZarrJson::GetNumbers(
+  const std::string& folder, const nlohmann::json& object, const char* name, std::uint64_t count)
+{
+  if (Find(object, name).is_null())
+  {
+    return {};
+  }
+  const Json& found = GetArray(folder, object, name);
+  CheckLimit(folder, "numbers in '" + std::string(name) + "'", found.size(), count);
+  std::vector<double> numbers;
+  for (const Json& one : found)
+  {
+    if (!one.is_number() || !std::isfinite(one.get<double>()))
+    {
+      Refuse(folder,
+        "its '" + std::string(name) + "' has " +
+          (one.is_string() ? Quote(one.get<std::string>()) : one.type_name()) +
+          ", which is not a finite number.");
+    }
+    numbers.push_back(one.get<double>());
+  }
+  return numbers;
+}
+
+std::vector<std::int64_t> ZarrJson::GetIntegers(const std::string& folder,
+  const nlohmann::json& object, const char* name, std::uint64_t count, std::int64_t least,
+  std::int64_t most)
+{
+  const Json& found = GetArray(folder, object, name);
   CheckLimit(folder, "numbers in '" + std::string(name) + "'", found.size(), count);
   std::vector<std::int64_t> numbers;
   for (const Json& one : found)

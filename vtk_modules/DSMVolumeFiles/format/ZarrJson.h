@@ -34,6 +34,14 @@ std::vector<std::int64_t> GetIntegers(const std::string& folder, const nlohmann:
 
 /// Returns a number, or those of an array of at most FileLimits::Axes; none where it is no number, or not all are.
 std::vector<double> ToNumbers(const nlohmann::json& value);
+/// Returns a member that is an array. Throws dsm::Error, which names the folder and the member, when it is not.
+const nlohmann::json& GetArray(
+  const std::string& folder, const nlohmann::json& object, const char* name);
+
+/// Returns an array's numbers; nothing where there is no such member. Throws likewise, also when an element is not a
+/// finite number.
+std::vector<double> GetNumbers(
+  const std::string& folder, const nlohmann::json& object, const char* name, std::uint64_t count);
 
 /// Throws dsm::Error: the array or group in a folder cannot be read.
 [[noreturn]] void Refuse(const std::string& folder, const std::string& why);

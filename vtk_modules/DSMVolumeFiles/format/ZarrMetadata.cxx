@@ -503,9 +503,9 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
     }
     return data;
   }
-  catch (const Json::exception& error)
+  catch (const Json::exception&)
   {
-    Refuse(folder, std::string("its metadata are invalid (") + error.what() + ").");
+    Refuse(folder, "a member of its metadata has a wrong type.");
   }
 }
 
