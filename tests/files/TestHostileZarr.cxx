@@ -8,9 +8,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cstdint>
 #include <numeric>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <sys/stat.h>
@@ -371,6 +373,55 @@ TEST(HostileZarr, ALargeArrayWithoutChunksIsRight)
   const fs::path single = Write2("single",
     { { "shape", { 2097152, 2097152, 524288 } }, { "chunks", { 1, 1, 1 } }, { "dtype", "|u1" } });
   EXPECT_EQ(ReadWatched(single), "");
+}
+
+/// A folder is listed when a chunk is missing there. A chunk that is written later is read all the same.
+TEST(HostileZarr, ChunksThatAreNowhereAreKnownAndMayCome)
+{
+  const Json sizes = { { "shape", { 8, 8, 8 } }, { "dtype", "|u1" }, { "fill_value", 7 } };
+  struct Case
+  {
+    const char* Name;
+    const char* Separator;
+    const char* There;
+    const char* Later;
+  };
+  for (const Case& one : { Case{ "flat", ".", "0.0.0", "1.1.1" },
+         Case{ "nested", "/", "1/0/0", "1/1/1" }, Case{ "below", "/", "0/1/1", "1/1/1" } })
+  {
+    SCOPED_TRACE(one.Name);
+    Json changes = sizes;
+    changes["dimension_separator"] = one.Separator;
+    const fs::path folder = Write2(one.Name, changes);
+    const auto write = [&](const std::string& chunk)
+    {
+      fs::create_directories((folder / chunk).parent_path());
+      WriteText(folder / chunk, std::string(64, 'x'));
+    };
+    write(one.There);
+    const auto file = vol::OpenVolumeFile(folder);
+    const bricks::Box part{ { 5, 5, 5 }, { 8, 8, 8 } };
+    const bricks::Box whole{ { 0, 0, 0 }, { 8, 8, 8 } };
+    const auto read = [&]
+    {
+      std::byte samples[64];
+      file->ReadChunk(0, 0, { 1, 1, 1 }, samples);
+      return std::to_integer<int>(samples[63]);
+    };
+    EXPECT_EQ(read(), 7);
+    EXPECT_FALSE(file->IsFill(0, 0, part)) << "of a folder that was just written";
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    EXPECT_EQ(read(), 7);
+    EXPECT_TRUE(file->IsFill(0, 0, part));
+    EXPECT_FALSE(file->IsFill(0, 0, whole));
+    EXPECT_FALSE(file->IsFill(0, 0, { { 5, 5, 5 }, { 5, 8, 8 } }));
+    EXPECT_EQ(read(), 7);
+    write(one.Later);
+    EXPECT_EQ(read(), 'x');
+    EXPECT_FALSE(file->IsFill(0, 0, part));
+    fs::remove_all(folder);
+    EXPECT_THROW(read(), dsm::Error);
+  }
 }
 
 fs::path WriteShards(const std::string& name, const Json& shard, const Json& chunk,

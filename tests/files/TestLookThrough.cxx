@@ -60,6 +60,53 @@ public:
   mutable std::atomic<int> Read{ 0 };
 };
 
+/// A ball's values in two chunks, and 0.5 where nothing is stored, which it may say.
+class SparseFile final : public vol::VolumeFile
+{
+public:
+  SparseFile(bool says, double missing)
+    : VolumeFile("sparse")
+    , Says(says)
+  {
+    vol::FileArray array;
+    array.Type = bricks::ScalarType::Float32;
+    array.Grid = { Samples, bricks::Index3(16) };
+    array.Valid.Fill = missing;
+    this->Arrays.push_back(array);
+    this->Geometry.Points = Samples;
+  }
+  void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
+  {
+    ++this->Read;
+    auto* to = reinterpret_cast<float*>(out);
+    bricks::ForEachIndex(this->GetArrays().front().Grid.GetBox(chunk),
+      [&](const bricks::Index3& at)
+      {
+        const bool isMissing = this->GetArrays().front().Valid.Fill == 0.5;
+        const float fill = isMissing ? std::numeric_limits<float>::quiet_NaN() : 0.5f;
+        *to++ = IsThere(chunk) ? GetValue(at) : fill;
+      });
+  }
+  bool IsFill(std::size_t, int, const bricks::Box& box) const override
+  {
+    bool isThere = false;
+    const bricks::Index3 edge(16);
+    bricks::ForEachIndex({ box.Min / edge, (box.Max + bricks::Index3(15)) / edge },
+      [&](const bricks::Index3& chunk) { isThere = isThere || IsThere(chunk); });
+    return this->Says && !isThere;
+  }
+
+  mutable std::atomic<int> Read{ 0 };
+
+private:
+  static bool IsThere(const bricks::Index3& chunk)
+  {
+    return chunk == bricks::Index3(0) || chunk == bricks::Index3(4, 3, 2);
+  }
+
+  bool Says;
+};
+
 bool GoOn(double)
 {
   return true;
@@ -225,5 +272,48 @@ TEST(LookThrough, AllBricksAreInOrderOnce)
     std::vector<dsm::BlockId> expected(lattice.GetBrickCount());
     std::iota(expected.begin(), expected.end(), dsm::BlockId(0));
     EXPECT_EQ(order, expected);
+  }
+}
+
+/// Bricks of what is not stored count without being read, and the results are the same.
+TEST(LookThrough, WhatIsNotStoredIsNotRead)
+{
+  for (const double missing : { std::numeric_limits<double>::quiet_NaN(), 0.5 })
+  {
+    SCOPED_TRACE(missing);
+    const auto whole = bricks::Box{ bricks::Index3(0), Samples };
+    const auto all = std::make_shared<const SparseFile>(false, missing);
+    const auto few = std::make_shared<const SparseFile>(true, missing);
+    const auto expected = vol::LookThrough(all, 0, 0, whole, 2, GoOn);
+    const auto found = vol::LookThrough(few, 0, 0, whole, 2, GoOn);
+    ASSERT_TRUE(expected && found);
+    EXPECT_LT(few->Read, all->Read);
+    const auto expectSame = [](const vol::ValueRanges& one, const vol::ValueRanges& other)
+    {
+      EXPECT_EQ(one.All[0].Least, other.All[0].Least);
+      EXPECT_EQ(one.All[0].Greatest, other.All[0].Greatest);
+      EXPECT_EQ(one.Finite[0].Greatest, other.Finite[0].Greatest);
+    };
+    expectSame(found->Ranges, expected->Ranges);
+    ASSERT_EQ(found->Bricks.Seen.size(), expected->Bricks.Seen.size());
+    for (std::size_t brick = 0; brick < found->Bricks.Seen.size(); ++brick)
+    {
+      const bricks::SeenBrick& one = found->Bricks.Seen[brick];
+      const bricks::SeenBrick& other = expected->Bricks.Seen[brick];
+      EXPECT_EQ(one.Range.First, other.Range.First);
+      EXPECT_EQ(one.Range.Last, other.Range.Last);
+      EXPECT_FALSE(one.Digest != other.Digest);
+    }
+    const bricks::IsovalueSurvey& survey = found->Bricks.Survey;
+    EXPECT_EQ(survey.All, expected->Bricks.Survey.All);
+    EXPECT_EQ(survey.AtBorder, expected->Bricks.Survey.AtBorder);
+    EXPECT_EQ(survey.Values, expected->Bricks.Survey.Values);
+    EXPECT_EQ(survey.Crossed, expected->Bricks.Survey.Crossed);
+    EXPECT_EQ(survey.CutOpen, expected->Bricks.Survey.CutOpen);
+    const int before = few->Read;
+    const auto ranges = vol::FindRanges(few, 0, 0, whole, 2, GoOn);
+    ASSERT_TRUE(ranges);
+    EXPECT_LE(few->Read, before + 4) << "two chunks, and the fill value for each thread";
+    expectSame(*ranges, expected->Ranges);
   }
 }

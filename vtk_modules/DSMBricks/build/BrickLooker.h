@@ -9,6 +9,7 @@
 #include "DSMCore/fetch/BlockReader.h"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace bricks
@@ -42,15 +43,21 @@ struct SeenBricks
   }
 };
 
-/// Reads bricks, and finds out what there is to know of them. Its threads are numbered from 0; each keeps its own
-/// brick and survey, so that none waits.
+/// Reads bricks, and finds out what there is to know of them. Of bricks that hold nothing but the fill value
+/// it reads one of each size. Its threads are numbered from 0; each keeps its own brick and
+/// survey, so that none waits.
 class BrickLooker
 {
 public:
-  /// `reader` must outlive it. Throws std::bad_alloc.
-  BrickLooker(const BrickLattice& lattice, const dsm::BlockReader& reader, int threads);
+  /// Returns whether a brick holds nothing but the fill value, as VoxelBrickReader::IsFiller. Empty: no brick does.
+  using FillerTest = std::function<bool(dsm::BlockId)>;
 
-  /// The block of a brick, which stays until the thread's next one. Throws what the reader does.
+  /// `reader` must outlive it. Throws std::bad_alloc.
+  BrickLooker(const BrickLattice& lattice, const dsm::BlockReader& reader, int threads,
+    FillerTest isFiller = {});
+
+  /// The block of a brick, which stays until the thread's next one; null where the thread has read a block with the same
+  /// bytes before. Throws what the reader does.
   const std::byte* Read(dsm::BlockId id, int thread);
   /// Returns the data of the brick that the thread has read. Each brick counts once in the survey.
   SeenBrick See(dsm::BlockId id, int thread);
@@ -58,10 +65,26 @@ public:
   IsovalueSurvey GetSurvey() const;
 
 private:
+  /// What bricks of one size are that hold nothing but the fill value.
+  struct Filler
+  {
+    Index3 Cells;
+    SeenBrick Seen;
+    IsovalueSurvey Survey; ///< of one of them
+  };
+  struct Work
+  {
+    IsovalueSurvey Survey;
+    std::vector<std::byte> Block;
+    std::vector<Filler> Fillers;
+    bool IsFiller = false; ///< the brick that Read was called for
+    std::size_t Known = 0; ///< its place among Fillers, or their number
+  };
+
   const BrickLattice& Lattice;
   const dsm::BlockReader& Reader;
-  std::vector<IsovalueSurvey> Surveys;
-  std::vector<std::vector<std::byte>> Blocks;
+  FillerTest IsFiller;
+  std::vector<Work> Works;
 };
 
 } // namespace bricks

@@ -28,6 +28,7 @@ public:
   {
     this->Source->ReadSamples(points, out);
   }
+  bool IsFill(const Box& points) const override { return this->Source->IsFill(points); }
   bool HasCellMask() const override { return true; }
   void ReadCellMask(const Box& cells, std::uint8_t* out) const override;
 

@@ -47,4 +47,10 @@ void VoxelBrickReader::Read(dsm::BlockId id, std::byte* block, std::size_t bytes
   sink.Finish(id, block, bytes);
 }
 
+bool VoxelBrickReader::IsFiller(dsm::BlockId id) const
+{
+  const Box cells = this->Lattice.GetCellsOfBrick(id);
+  return this->Source->IsFill({ cells.Min, cells.Max + Index3(1) });
+}
+
 } // namespace bricks

@@ -20,6 +20,9 @@ public:
   /// Throws dsm::Error when the source has not all of the lattice's cells, or a cell mask that the lattice lacks.
   VoxelBrickReader(const BrickLattice& lattice, std::shared_ptr<const VoxelSource> source);
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
+  /// Returns whether the source says that all samples of a brick have its fill value (VoxelSource::IsFill): all such
+  /// bricks of one size have the same bytes.
+  bool IsFiller(dsm::BlockId id) const;
 
 private:
   BrickLattice Lattice;

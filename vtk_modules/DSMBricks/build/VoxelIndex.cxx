@@ -169,7 +169,7 @@ VoxelIndex VoxelIndex::Find(dsm::Messenger& messenger, const BrickLattice& latti
         seen = pass.Seen->Seen;
       }
       seen.resize(seen.size() + division->CountOthers(self));
-      looker.emplace(lattice, reader, threads);
+      looker.emplace(lattice, reader, threads, pass.IsFiller);
     });
   const std::size_t others = division->CountOthers(self);
   SeenBrick* const found = seen.data() + (seen.size() - others);

@@ -46,6 +46,7 @@ struct VoxelIndex
     /// are not read again.
     const SeenBricks* Seen = nullptr;
     int Threads = 1;
+    BrickLooker::FillerTest IsFiller = {};
   };
 
   /// Collective: each rank reads its part of the bricks that no rank has seen, a few at a time. `progress`

@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,8 +15,34 @@
 namespace bricks
 {
 
+namespace
+{
+
+/// The default edge, doubled until the tables of all bricks, of tens of bytes each, fit a rank's memory.
+int FindEdge(const Index3& points, ScalarType type)
+{
+  constexpr double mostBricks = 1 << 24;
+  int edge = BrickLattice::GetDefaultEdge(type);
+  const auto count = [&]
+  {
+    double bricks = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      bricks *= std::ceil(static_cast<double>(points[axis] - 1) / edge);
+    }
+    return bricks;
+  };
+  while (2 * edge <= BrickLattice::LargestEdge && count() > mostBricks)
+  {
+    edge *= 2;
+  }
+  return edge;
+}
+
+} // namespace
+
 BrickLattice::BrickLattice(const Index3& points, ScalarType type, bool cellMask)
-  : BrickLattice(points, type, cellMask, GetDefaultEdge(type))
+  : BrickLattice(points, type, cellMask, FindEdge(points, type))
 {
 }
 

@@ -275,6 +275,24 @@ void LimitedSurvey::Add(const LimitedSurvey& other)
   this->Constant += other.Constant;
 }
 
+void IsovalueSurvey::CountUniform(const Box& cells, const Index3& end, double value)
+{
+  const Index3 macrocells = (cells.GetSize() + Index3(MacrocellEdge - 1)) / Index3(MacrocellEdge);
+  Index3 inside = macrocells;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    inside[axis] -= (cells.Min[axis] == 0 ? 1 : 0) + (cells.Max[axis] == end[axis] ? 1 : 0);
+    inside[axis] = std::max<std::int64_t>(0, inside[axis]);
+  }
+  const std::int64_t count = macrocells.x * macrocells.y * macrocells.z;
+  this->Reach(value, value);
+  const double perWidth = std::ldexp(1.0, static_cast<int>(-this->Exponent));
+  // A macrocell with one value crosses no border between intervals.
+  this->Values[static_cast<std::size_t>(FindInterval(value, perWidth) - this->First)] += 4 * count;
+  this->All += count;
+  this->AtBorder += count - inside.x * inside.y * inside.z;
+}
+
 void IsovalueSurvey::Add(const IsovalueSurvey& other)
 {
   if (other.All == 0)

@@ -47,6 +47,8 @@ struct IsovalueSurvey
   /// values beyond the limits do not count.
   void CountBrick(
     const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits = {});
+  /// The same of a brick whose cells all hold data, and whose samples all are `value`, which is finite.
+  void CountUniform(const Box& cells, const Index3& end, double value);
   /// Both surveys must be valid.
   void Add(const IsovalueSurvey& other);
   /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.

@@ -27,6 +27,9 @@ public:
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
   bool ReadWithoutWaiting(dsm::BlockId id, std::byte* block, std::size_t bytes) const override;
 
+  /// As bricks::VoxelBrickReader.
+  bool IsFiller(dsm::BlockId id) const { return this->Bricks.IsFiller(id); }
+
   bool MayPrefetch() const override { return this->CanTell; }
   void Prefetch(const std::vector<dsm::BlockId>& ids) const override;
 

@@ -100,6 +100,12 @@ void FileSamples::ReadSamples(const bricks::Box& points, std::byte* out) const
     });
 }
 
+bool FileSamples::IsFill(const bricks::Box& points) const
+{
+  const bricks::Index3& first = this->Read.Samples.Min;
+  return this->File->IsFill(this->Array, this->Step, { points.Min + first, points.Max + first });
+}
+
 void FileSamples::ReadBox(const bricks::Box& points, std::byte* out) const
 {
   const bricks::Index3& first = this->Read.Samples.Min;

@@ -35,6 +35,7 @@ public:
 
   bricks::Box GetCells() const override;
   void ReadSamples(const bricks::Box& points, std::byte* out) const override;
+  bool IsFill(const bricks::Box& points) const override;
 
 private:
   void ReadBox(const bricks::Box& points, std::byte* out) const;

@@ -178,6 +178,11 @@ protected:
       frame % times };
   }
 
+  bool IsMissing(std::size_t array, int step, const bricks::Index3& chunk) const override
+  {
+    return !this->Kept[array].ReadByLibrary && !this->FindChunk(array, step, chunk);
+  }
+
 private:
   struct Dataset
   {

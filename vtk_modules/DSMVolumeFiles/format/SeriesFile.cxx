@@ -88,6 +88,11 @@ public:
     return this->Get(step)->ReadWithHalo(array, 0, chunk, out);
   }
 
+  bool IsFill(std::size_t array, int step, const bricks::Box& box) const override
+  {
+    return this->Get(step)->IsFill(array, 0, box);
+  }
+
   void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override
   {
     this->Get(step)->Prefetch(array, 0, parts);

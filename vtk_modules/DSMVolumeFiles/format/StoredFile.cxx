@@ -343,6 +343,27 @@ bool StoredFile::ReadWithHalo(
   return true;
 }
 
+bool StoredFile::IsFill(std::size_t array, int step, const bricks::Box& box) const
+{
+  const bricks::Index3 edges = this->GetStoredGrid(array).ChunkSamples;
+  const bricks::Index3 first = box.Min / edges;
+  const bricks::Index3 last = (box.Max - bricks::Index3(1)) / edges;
+  for (std::int64_t z = first.z; z <= last.z; ++z)
+  {
+    for (std::int64_t y = first.y; y <= last.y; ++y)
+    {
+      for (std::int64_t x = first.x; x <= last.x; ++x)
+      {
+        if (!this->IsMissing(array, step, { x, y, z }))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return !box.IsEmpty();
+}
+
 void StoredFile::Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const
 {
   std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;

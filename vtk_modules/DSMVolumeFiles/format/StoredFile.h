@@ -29,6 +29,7 @@ public:
     std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override;
 
   void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override;
+  bool IsFill(std::size_t array, int step, const bricks::Box& box) const override;
 
 protected:
   using VolumeFile::VolumeFile;
@@ -67,6 +68,12 @@ protected:
   /// None: all samples of the chunk have the fill value. `chunk` is one of GetStoredGrid.
   virtual std::optional<Place> FindChunk(
     std::size_t array, int step, const bricks::Index3& chunk) const = 0;
+
+  /// Returns whether FindChunk would return nothing, if that is known without a look at the file system.
+  virtual bool IsMissing(std::size_t, int /*step*/, const bricks::Index3& /*chunk*/) const
+  {
+    return false;
+  }
 
   /// How the array is cut in the file.
   ChunkGrid GetStoredGrid(std::size_t array) const;

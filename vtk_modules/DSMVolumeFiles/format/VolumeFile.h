@@ -120,6 +120,10 @@ public:
   virtual void ReadChunk(
     std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const = 0;
 
+  /// Returns whether no sample of a box is stored, so that all have the fill value, and this is known without reading.
+  /// False where it is not known. Fast; throws nothing but std::bad_alloc.
+  virtual bool IsFill(std::size_t, int /*step*/, const bricks::Box&) const { return false; }
+
   /// Returns the bytes in memory, while the file is open, of the tables of its chunks.
   virtual std::uint64_t GetTableBytes() const { return 0; }
 

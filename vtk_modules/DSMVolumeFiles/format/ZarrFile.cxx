@@ -10,6 +10,7 @@
 #include "DSMVolumeFiles/format/VolumeShape.h"
 #include "DSMVolumeFiles/format/ZarrAxes.h"
 #include "DSMVolumeFiles/format/ZarrJson.h"
+#include "DSMVolumeFiles/format/ZarrListing.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
 #include "DSMVolumeFiles/format/ZarrVector.h"
@@ -110,7 +111,12 @@ public:
       files = std::min(most, files + mine);
       indexBytes = std::max<std::uint64_t>(indexBytes, data.Shards ? data.Shards->IndexBytes : 0);
     }
-    return ZarrParts::CountBytes(files, indexBytes);
+    std::uint64_t listed = 0;
+    for (const auto& [folder, listing] : this->Listings)
+    {
+      listed += listing->GetBytes();
+    }
+    return ZarrParts::CountBytes(files, indexBytes) + listed;
   }
 
 protected:
@@ -119,22 +125,8 @@ protected:
   {
     const Source& source = this->Sources[array];
     const ZarrMetadata& data = *source.Data;
-    const std::size_t axes = data.Shape.size();
-    std::vector<std::int64_t> index(axes, 0);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      index[source.Axes.FindInSpace(axes, axis)] = chunk[axis];
-    }
-    // A chunk may have several times and channels.
     std::size_t slice = 0;
-    for (std::size_t axis = 0; axis < source.Channel.size(); ++axis)
-    {
-      const std::int64_t at =
-        static_cast<int>(axis) == source.Axes.Time ? step : source.Channel[axis];
-      index[axis] = at / data.ChunkShape[axis];
-      slice = slice * static_cast<std::size_t>(data.ChunkShape[axis]) +
-        static_cast<std::size_t>(at % data.ChunkShape[axis]);
-    }
+    const Index index = FindIndex(source, step, chunk, &slice);
     std::optional<Place> place =
       data.Shards ? this->FindInShard(source, index) : this->FindFile(source, index);
     if (place)
@@ -144,7 +136,15 @@ protected:
     return place;
   }
 
+  bool IsMissing(std::size_t array, int step, const bricks::Index3& chunk) const override
+  {
+    const Source& source = this->Sources[array];
+    return source.Listing->IsMissing(GetFileIndex(source, FindIndex(source, step, chunk)));
+  }
+
 private:
+  using Index = ZarrListing::Index; ///< of a chunk, or of a file
+
   /// Origin of one of this file's arrays.
   struct Source
   {
@@ -152,7 +152,44 @@ private:
     std::shared_ptr<const ZarrMetadata> Data;
     ZarrAxes Axes;
     std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
+    ZarrListing* Listing;              ///< one of Listings
   };
+
+  /// `slice`: which one of the times and channels in the chunk.
+  static Index FindIndex(
+    const Source& source, int step, const bricks::Index3& chunk, std::size_t* slice = nullptr)
+  {
+    const ZarrMetadata& data = *source.Data;
+    const std::size_t axes = data.Shape.size();
+    Index index{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      index[source.Axes.FindInSpace(axes, axis)] = chunk[axis];
+    }
+    for (std::size_t axis = 0; axis < source.Channel.size(); ++axis)
+    {
+      const std::int64_t at =
+        static_cast<int>(axis) == source.Axes.Time ? step : source.Channel[axis];
+      index[axis] = at / data.ChunkShape[axis];
+      if (slice)
+      {
+        *slice = *slice * static_cast<std::size_t>(data.ChunkShape[axis]) +
+          static_cast<std::size_t>(at % data.ChunkShape[axis]);
+      }
+    }
+    return index;
+  }
+
+  /// Which file, or shard, has a chunk.
+  static Index GetFileIndex(const Source& source, Index index)
+  {
+    const ZarrMetadata& data = *source.Data;
+    for (std::size_t axis = 0; data.Shards && axis < data.Shape.size(); ++axis)
+    {
+      index[axis] /= data.Shards->ShardShape[axis] / data.ChunkShape[axis];
+    }
+    return index;
+  }
 
   /// Computes the stamp from the arrays' own files and from the results of the attributes, which
   /// may be in other files: axes, time, channels, their names, and the positions of the samples.
@@ -534,7 +571,9 @@ private:
       array.Valid = packed.GetValid();
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
-      this->Sources.push_back({ folder, data, axes, std::move(place) });
+      auto& listing = this->Listings[folder];
+      listing = listing ? std::move(listing) : std::make_unique<ZarrListing>(folder, *data);
+      this->Sources.push_back({ folder, data, axes, std::move(place), listing.get() });
     }
   }
 
@@ -562,27 +601,27 @@ private:
     return {};
   }
 
-  static std::string GetKey(const ZarrMetadata& data, const std::vector<std::int64_t>& index)
+  static std::string GetKey(const ZarrMetadata& data, const Index& index)
   {
     std::string key = data.Prefix;
-    for (const std::int64_t number : index)
+    for (std::size_t axis = 0; axis < data.Shape.size(); ++axis)
     {
-      key += (key.empty() ? "" : data.Separator) + std::to_string(number);
+      key += (key.empty() ? "" : data.Separator) + std::to_string(index[axis]);
     }
     return key;
   }
 
-  std::optional<StoredFile::Place> FindFile(
-    const Source& source, const std::vector<std::int64_t>& index) const
+  std::optional<StoredFile::Place> FindFile(const Source& source, const Index& index) const
   {
     const std::string path = source.Folder + "/" + GetKey(*source.Data, index);
-    if (FindPathKind(path) == PathKind::Nothing)
+    if (source.Listing->IsStillMissing(index) || FindPathKind(path) == PathKind::Nothing)
     {
       this->Parts.CheckNeverThere(path);
       if (!MayBeZarr(source.Folder))
       {
         throw FileError(source.Folder, "was deleted after it was opened.");
       }
+      source.Listing->NoteMissing(index);
       return std::nullopt;
     }
     const auto file = std::make_shared<const PositionedFile>(path);
@@ -590,21 +629,18 @@ private:
     return StoredFile::Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
   }
 
-  std::optional<StoredFile::Place> FindInShard(
-    const Source& source, const std::vector<std::int64_t>& index) const
+  std::optional<StoredFile::Place> FindInShard(const Source& source, const Index& index) const
   {
     const ZarrMetadata& data = *source.Data;
     const ZarrMetadata::Sharding& shards = *data.Shards;
-    std::vector<std::int64_t> shard;
     std::size_t number = 0;
-    for (std::size_t axis = 0; axis < index.size(); ++axis)
+    for (std::size_t axis = 0; axis < data.Shape.size(); ++axis)
     {
       const std::int64_t across = shards.ShardShape[axis] / data.ChunkShape[axis];
-      shard.push_back(index[axis] / across);
       number =
         number * static_cast<std::size_t>(across) + static_cast<std::size_t>(index[axis] % across);
     }
-    std::optional<StoredFile::Place> place = this->FindFile(source, shard);
+    std::optional<StoredFile::Place> place = this->FindFile(source, GetFileIndex(source, index));
     if (!place)
     {
       return std::nullopt;
@@ -625,8 +661,9 @@ private:
     return place;
   }
 
-  bool IsPlaced;               ///< by what it says
-  std::vector<Source> Sources; ///< one for each array
+  bool IsPlaced;                                                ///< by what it says
+  std::vector<Source> Sources;                                  ///< one for each array
+  std::map<std::string, std::unique_ptr<ZarrListing>> Listings; ///< by folder
   std::unordered_set<std::string> Names;
   mutable ZarrParts Parts;
 };

@@ -112,7 +112,8 @@ std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, s
   bricks.Seen.resize(static_cast<std::size_t>(bricks.Bricks.GetCount()));
   const std::vector<dsm::BlockId> order =
     OrderBricks(lattice, FindBricks(lattice, box), array, bricks::Index3(0));
-  bricks::BrickLooker looker(lattice, reader, threads);
+  bricks::BrickLooker looker(
+    lattice, reader, threads, [&](dsm::BlockId id) { return reader.IsFiller(id); });
   std::vector<ValueRanges> parts(static_cast<std::size_t>(threads), look.Ranges);
   std::atomic<std::size_t> done{ 0 };
   std::atomic<bool> stopped{ false };
@@ -123,13 +124,16 @@ std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, s
       for (std::size_t index = begin; index < end && !stopped; ++index)
       {
         const dsm::BlockId id = order[index];
-        const std::byte* const block = looker.Read(id, thread);
-        bricks::VoxelBrickHeader header;
-        std::memcpy(&header, block, sizeof(header));
-        const bricks::Box cells = lattice.GetCellsOfBrick(id);
-        const bricks::Box have{ cells.Min, cells.Max + bricks::Index3(1) };
-        parts[static_cast<std::size_t>(thread)].Add(
-          array, block + header.SampleOffset, have, bricks::Intersect(have, box));
+        // A block with the same bytes has the same range.
+        if (const std::byte* const block = looker.Read(id, thread))
+        {
+          bricks::VoxelBrickHeader header;
+          std::memcpy(&header, block, sizeof(header));
+          const bricks::Box cells = lattice.GetCellsOfBrick(id);
+          const bricks::Box have{ cells.Min, cells.Max + bricks::Index3(1) };
+          parts[static_cast<std::size_t>(thread)].Add(
+            array, block + header.SampleOffset, have, bricks::Intersect(have, box));
+        }
         const bricks::Index3 brick = lattice.GetBrick(id);
         if (bricks.Has(brick))
         {

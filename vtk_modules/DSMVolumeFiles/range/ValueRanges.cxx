@@ -217,6 +217,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
   const Room room(array, threads);
   std::vector<ValueRanges> parts(room.GetThreads(), ValueRanges(array.Components));
   std::vector<ByteBuffer> buffers(parts.size());
+  std::vector<char> hasFill(parts.size(), 0);
   std::atomic<std::int64_t> done{ 0 };
   std::atomic<bool> stopped{ false };
   bricks::ParallelFor(static_cast<int>(parts.size()), static_cast<std::size_t>(chunks.GetCount()),
@@ -230,11 +231,17 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
       const bricks::Index3 chunk = firstChunk +
         bricks::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
       const bricks::Box have = array.Grid.GetBox(chunk);
-      ByteBuffer& samples = buffers[static_cast<std::size_t>(thread)];
-      samples.resize(static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
-      file->ReadChunk(number, step, chunk, samples.data());
-      parts[static_cast<std::size_t>(thread)].Add(
-        array, samples.data(), have, bricks::Intersect(have, box));
+      // The fill value counts once.
+      const bool isFill = file->IsFill(number, step, have);
+      if (!isFill || !hasFill[static_cast<std::size_t>(thread)])
+      {
+        ByteBuffer& samples = buffers[static_cast<std::size_t>(thread)];
+        samples.resize(static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
+        file->ReadChunk(number, step, chunk, samples.data());
+        parts[static_cast<std::size_t>(thread)].Add(
+          array, samples.data(), have, bricks::Intersect(have, box));
+        hasFill[static_cast<std::size_t>(thread)] |= isFill ? 1 : 0;
+      }
       ++done;
       if (thread == 0 &&
         !goesOn(static_cast<double>(done) / static_cast<double>(chunks.GetCount())))

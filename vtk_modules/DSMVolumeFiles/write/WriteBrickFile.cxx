@@ -225,7 +225,9 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   layout.HasHaloRecords = options.HasHaloRecords;
   layout.BrickEdge = options.BrickEdge != 0
     ? options.BrickEdge
-    : bricks::BrickLattice::GetDefaultEdge(from.GetArrays().front().Type);
+    : bricks::BrickLattice(glm::max(from.GetArrays().front().Grid.Samples, bricks::Index3(2)),
+        from.GetArrays().front().Type, /*cellMask=*/false)
+        .GetEdge();
   if (layout.BrickEdge < 1 || layout.BrickEdge > bricks::BrickLattice::LargestEdge)
   {
     throw dsm::Error("A brick must have 1 to " + std::to_string(bricks::BrickLattice::LargestEdge) +

@@ -9,7 +9,6 @@
 #include "DSMCore/memory/FreedMemory.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/cache/FileCells.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/cache/ReadAhead.h"
@@ -412,7 +411,7 @@ bool vtkDSMFileVolume::HasSteps() const
   return this->Values->GetFile()->GetSteps() > 1;
 }
 
-std::shared_ptr<const dsm::BlockReader> vtkDSMFileVolume::CreateReader(
+std::shared_ptr<const vol::FileBrickReader> vtkDSMFileVolume::CreateReader(
   const bricks::BrickLattice& lattice, bool scattered) const
 {
   const auto& values = this->Values;
@@ -568,9 +567,12 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
   pass.Seen = seen && !this->HasOwnMissing() ? &*seen : nullptr;
+  std::shared_ptr<const vol::FileBrickReader> reader;
   messenger.RunTogether(what,
     [&]
     {
+      reader = this->CreateReader(lattice, false);
+      pass.IsFiller = [reader](dsm::BlockId id) { return reader->IsFiller(id); };
       pass.Order = vol::OrderBricks(lattice, { bricks::Index3(0), lattice.GetBricks() },
         this->Values->GetArray(), this->Values->GetBox().Min);
     });

@@ -9,6 +9,7 @@
 #include "DSMBricks/build/VoxelSource.h"
 #include "DSMBricks/layout/BrickLattice.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "vtkDSMFileValues.h"
 
@@ -97,7 +98,7 @@ public:
   }
 
   /// Bricks of the lattice. `scattered`: they are read as rays meet them, not all in turn.
-  std::shared_ptr<const dsm::BlockReader> CreateReader(
+  std::shared_ptr<const vol::FileBrickReader> CreateReader(
     const bricks::BrickLattice& lattice, bool scattered) const;
   /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
   /// have the same digests there; `digests` may be empty.
