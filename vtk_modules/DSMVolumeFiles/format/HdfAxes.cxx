@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfAxes.h"
 
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
 #include <algorithm>
@@ -99,6 +100,13 @@ bool HdfAxes::Find(
   this->Components = hasComponents ? shape.back() : 0;
   this->Samples = this->GetSpace(shape);
   return true;
+}
+
+void HdfAxes::RefuseLength(
+  const std::string& path, const std::string& dataset, const std::string& tooLong)
+{
+  throw FileError(
+    path, "has an invalid header: its dataset '" + dataset + "' declares " + tooLong + ".");
 }
 
 bricks::Index3 HdfAxes::GetSpace(const std::vector<hsize_t>& edges) const

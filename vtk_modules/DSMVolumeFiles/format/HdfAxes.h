@@ -48,6 +48,10 @@ struct HdfAxes
   bool Find(const std::vector<hsize_t>& shape, Kind kind, const AxisNotes& notes,
     std::string* tooLong = nullptr);
 
+  /// Throws dsm::Error, which says that a dataset declares what is `tooLong`.
+  [[noreturn]] static void RefuseLength(
+    const std::string& path, const std::string& dataset, const std::string& tooLong);
+
   /// Samples of a box of chunks of so many samples along each axis of the dataset.
   bricks::Index3 GetSpace(const std::vector<hsize_t>& edges) const;
   /// Boxes of samples in such a chunk, of the axes before those in space.

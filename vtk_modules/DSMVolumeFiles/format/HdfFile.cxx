@@ -13,16 +13,15 @@
 #include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfImage.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
-#include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
+#include "DSMVolumeFiles/format/HdfVolumes.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -327,7 +326,7 @@ private:
         dataset.IsOpen() && found.Find(GetHdfShape(dataset.Get()), kind, {}, &tooLong);
       if (!tooLong.empty())
       {
-        this->RefuseLength(link, tooLong);
+        HdfAxes::RefuseLength(this->Path, link, tooLong);
       }
       if (isVolume && found.Samples == samples)
       {
@@ -379,81 +378,21 @@ private:
     return frames;
   }
 
-  /// A dataset that holds a volume, and what is known of its axes.
-  struct Volume
-  {
-    HdfAxes Axes;
-    AxisNotes Notes;
-    std::vector<std::string> Warnings;
-  };
-
   void FindDatasets(const std::string& wanted)
   {
-    const std::vector<std::string> names =
-      wanted.empty() ? FindHdfDatasets(this->File.Get()) : std::vector<std::string>{ wanted };
-    std::map<std::string, Volume> volumes;
-    std::vector<std::string> others; // datasets of numbers that are no volumes
-    for (const std::string& name : names)
+    const HdfVolumes volumes = HdfVolumes::Find(this->File.Get(), this->Path, wanted);
+    this->Missing = volumes.Missing;
+    this->Geometry.Points = volumes.Shape.Samples;
+    this->Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
+    for (const HdfVolume& volume : volumes.Found)
     {
-      const HdfHandle dataset = OpenHdfDataset(this->File.Get(), name);
-      if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
-      {
-        continue;
-      }
-      const std::vector<hsize_t> shape = GetHdfShape(dataset.Get());
-      Volume volume;
-      volume.Notes = ReadHdfNotes(this->File.Get(), dataset.Get(), volume.Warnings);
-      std::string tooLong;
-      if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, volume.Notes, &tooLong))
-      {
-        volumes.emplace(name, std::move(volume));
-      }
-      else if (!tooLong.empty() && names.size() == 1)
-      {
-        this->RefuseLength(name, tooLong);
-      }
-      else
-      {
-        others.push_back(name + "' (" + DescribeHdfShape(shape) + ")");
-      }
+      this->LocateBy(volume);
+      this->Add(OpenHdfDataset(this->File.Get(), volume.Name), volume.Name, false, volume.Axes, {});
     }
-    this->DescribeMissing(wanted, others);
-    VolumeShape largest;
-    for (const auto& [name, volume] : volumes)
-    {
-      const VolumeShape shape = volume.Axes.GetShape();
-      largest = shape.IsLargerThan(largest) ? shape : largest;
-    }
-    this->Geometry.Points = largest.Samples;
-    this->Steps = static_cast<int>(std::max<std::int64_t>(1, largest.Times));
-    for (const auto& [name, volume] : volumes)
-    {
-      if (volume.Axes.GetShape().BelongsTo(largest))
-      {
-        this->LocateBy(name, volume);
-        this->Add(OpenHdfDataset(this->File.Get(), name), name, false, volume.Axes, {});
-      }
-    }
-  }
-
-  /// What there must be, should no volume be found.
-  void DescribeMissing(const std::string& wanted, const std::vector<std::string>& others)
-  {
-    const std::string shapes = others.empty()
-      ? std::string()
-      : " A volume has numbers along three axes (z, y, x). It may have a first axis of time steps, "
-        "others of length 1, and a last axis of components. Datasets of numbers: '" +
-        others.front() +
-        (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : ".");
-    const bool isThere = wanted.empty() || OpenHdfDataset(this->File.Get(), wanted).IsOpen();
-    this->Missing = wanted.empty() ? "numeric dataset with three axes." + shapes
-      : isThere                    ? "volume in its dataset '" + wanted + "'." + shapes
-                                   : "dataset '" + wanted +
-        "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(this->File.Get()));
   }
 
   /// By the first of the datasets, whose place is all datasets'.
-  void LocateBy(const std::string& name, const Volume& volume)
+  void LocateBy(const HdfVolume& volume)
   {
     this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
     if (volume.Notes.size() != volume.Axes.Rank)
@@ -482,19 +421,13 @@ private:
     }
     else if (!IsSamePlace(place, this->Geometry) || coordinates != this->Coordinates)
     {
-      this->Warnings.push_back("has arrays at different positions. Array " + Quote(name) +
+      this->Warnings.push_back("has arrays at different positions. Array " + Quote(volume.Name) +
         " is shown at those of " + Quote(this->Arrays.front().Name) + ".");
     }
     if (volume.Axes.Time && this->Times.empty())
     {
       this->Times = FindTimes(volume.Notes[*volume.Axes.Time], this->Steps, this->Warnings);
     }
-  }
-
-  [[noreturn]] void RefuseLength(const std::string& name, const std::string& tooLong) const
-  {
-    throw FileError(
-      this->Path, "has an invalid header: its dataset '" + name + "' declares " + tooLong + ".");
   }
 
   void Add(HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes,

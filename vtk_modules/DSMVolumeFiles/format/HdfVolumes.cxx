@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMVolumeFiles/format/HdfVolumes.h"
+
+#include "DSMVolumeFiles/format/HdfNotes.h"
+#include "DSMVolumeFiles/format/HdfOrigins.h"
+#include "DSMVolumeFiles/format/HdfValues.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vol
+{
+
+namespace
+{
+
+/// `others`: datasets of numbers that are no volumes, with their shapes.
+std::string DescribeMissing(
+  hid_t file, const std::string& wanted, const std::vector<std::string>& others)
+{
+  const std::string shapes = others.empty()
+    ? std::string()
+    : " A volume has numbers along three axes (z, y, x). It may have a first axis of time steps, "
+      "others of length 1, and a last axis of components. Datasets of numbers: " +
+      others.front() +
+      (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : ".");
+  if (wanted.empty())
+  {
+    return "numeric dataset with three axes." + shapes;
+  }
+  return OpenHdfDataset(file, wanted).IsOpen()
+    ? "volume in its dataset '" + wanted + "'." + shapes
+    : "dataset '" + wanted + "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(file));
+}
+
+} // namespace
+
+HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::string& wanted)
+{
+  const std::vector<std::string> names =
+    wanted.empty() ? FindHdfDatasets(file) : std::vector<std::string>{ wanted };
+  HdfVolumes volumes;
+  std::vector<std::string> others;
+  for (const std::string& name : names)
+  {
+    const HdfHandle dataset = OpenHdfDataset(file, name);
+    if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
+    {
+      continue;
+    }
+    const std::vector<hsize_t> shape = GetHdfShape(dataset.Get());
+    HdfVolume volume;
+    volume.Name = name;
+    volume.Notes = ReadHdfNotes(file, dataset.Get(), volume.Warnings);
+    std::string tooLong;
+    if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, volume.Notes, &tooLong))
+    {
+      const VolumeShape own = volume.Axes.GetShape();
+      volumes.Shape = own.IsLargerThan(volumes.Shape) ? own : volumes.Shape;
+      volumes.Found.push_back(std::move(volume));
+    }
+    else if (!tooLong.empty() && names.size() == 1)
+    {
+      HdfAxes::RefuseLength(path, name, tooLong);
+    }
+    else
+    {
+      others.push_back("'" + name + "' (" + DescribeHdfShape(shape) + ")");
+    }
+  }
+  auto& found = volumes.Found;
+  found.erase(
+    std::remove_if(found.begin(), found.end(),
+      [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
+    found.end());
+  std::sort(found.begin(), found.end(),
+    [](const HdfVolume& a, const HdfVolume& b) { return a.Name < b.Name; });
+  volumes.Missing = DescribeMissing(file, wanted, others);
+  return volumes;
+}
+
+} // namespace vol

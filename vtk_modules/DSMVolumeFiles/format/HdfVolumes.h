@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vol_HdfVolumes_h
+#define vol_HdfVolumes_h
+
+#include "DSMVolumeFiles/format/AxisNotes.h"
+#include "DSMVolumeFiles/format/HdfAxes.h"
+#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/format/VolumeShape.h"
+
+#include <string>
+#include <vector>
+
+namespace vol
+{
+
+/// A dataset that holds a volume, and what is known of its axes.
+struct HdfVolume
+{
+  std::string Name; ///< path in the file
+  HdfAxes Axes;
+  AxisNotes Notes;
+  std::vector<std::string> Warnings; ///< as VolumeFile has them
+};
+
+/// The volumes of the largest shape in a file that is not VTKHDF.
+struct HdfVolumes
+{
+  VolumeShape Shape;
+  std::vector<HdfVolume> Found;
+  std::string Missing; ///< what there must be, where none is found, as the end of a sentence
+
+  /// `wanted`: the path of a dataset; empty: all are looked at. Throws dsm::Error, which names the file, where an axis is too
+  /// long. The caller has GetHdfLock.
+  static HdfVolumes Find(hid_t file, const std::string& path, const std::string& wanted);
+};
+
+} // namespace vol
+
+#endif
