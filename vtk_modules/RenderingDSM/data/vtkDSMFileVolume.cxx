@@ -557,7 +557,7 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   std::optional<bricks::VoxelIndex> known;
   messenger.RunTogether(
     what, [&] { known = bricks::VoxelIndex::Decode(bytes, lattice.GetBrickCount()); });
-  std::shared_ptr<const dsm::BlockReader> reader;
+  std::shared_ptr<const vol::FileBrickReader> reader;
   messenger.RunTogether(what, [&] { reader = this->CreateReader(lattice, false); });
   if (known)
   {
@@ -567,11 +567,9 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;
   pass.Seen = seen && !this->HasOwnMissing() ? &*seen : nullptr;
-  std::shared_ptr<const vol::FileBrickReader> reader;
   messenger.RunTogether(what,
     [&]
     {
-      reader = this->CreateReader(lattice, false);
       pass.IsFiller = [reader](dsm::BlockId id) { return reader->IsFiller(id); };
       pass.Order = vol::OrderBricks(lattice, { bricks::Index3(0), lattice.GetBricks() },
         this->Values->GetArray(), this->Values->GetBox().Min);
