@@ -557,13 +557,27 @@ TEST(HostileZarr, PlacesThatAreNotFiniteAreRefused)
                { { { "path", "0" }, { "coordinateTransformations", transformations } } } } } } } })
         .dump());
   };
-  write({ scale });
+  write(Json::array({ scale }));
   EXPECT_EQ(ReadWatched(folder), "");
   write({ scale, scale });
   ExpectRefusal(folder, { "invalid spacing" });
   write({ 1, 2 });
+  ExpectRefusal(folder, { "coordinate transformation" });
+  write(Json::array({ Json{ { "type", "displacements" } } }));
+  ExpectRefusal(folder, { "'displacements'", "cannot be shown" });
+  Json nested = Json::array({ scale });
+  for (int depth = 0; depth < 10; ++depth)
+  {
+    nested = Json::array({ Json{ { "type", "sequence" }, { "transformations", nested } } });
+  }
+  write(nested);
+  ExpectRefusal(folder, { "'sequence'", "nested too deeply" });
+  write(
+    Json::array({ Json{ { "type", "sequence" }, { "transformations", Json::array({ scale }) } } }));
   EXPECT_EQ(ReadWatched(folder), "");
-  write({ { { "type", "scale" }, { "scale", { "a", 1, 1 } } } });
+  write(scale);
+  ExpectRefusal(folder, { "'coordinateTransformations' is not an array" });
+  write(Json::array({ Json{ { "type", "scale" }, { "scale", { "a", 1, 1 } } } }));
   ExpectRefusal(folder, { "'scale' has 'a'", "not a finite number" });
   WriteText(folder / ".zattrs", "{\"multiscales\": [{\"datasets\": 1}]}");
   ExpectRefusal(folder, { "'datasets' is missing or not an array" });

@@ -102,6 +102,13 @@ for name, told in attributes.items():
 note("cf.zarr", [("t", "float32")], packing=PACKED, **PLACE)
 
 
+# Axes in an order of their own, in chunks with a filter and without one.
+for name, compressor in (("turned.zarr", "default"), ("turned_raw.zarr", None)):
+    save_zarr(name, values("<f4").transpose(1, 0, 2), compressor=compressor, chunks=(5, 4, 8))
+    with open(path(name + "/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump({"_ARRAY_DIMENSIONS": ["y", "depth", "x"], "voxel_size": [2, 4, 1]}, file)
+    note(name, [(name[: -len(".zarr")], "float32")], spacing=[1.0, 2.0, 4.0])
+
 # OME-Zarr 0.6: coordinate systems, transformations in one another, units that differ.
 def write_ome6(name, transformation, data, systems, **more):
     group = zarr.open_group(path(name), mode="w", **LATER)
@@ -132,7 +139,7 @@ write_ome6(
     spacing=[0.5, 2.0, 4.0], origin=[30.0, 20.0, 10.0],
 )
 write_ome6(
-    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=["shown in 'nanometer'"],
+    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=["shown in 'micrometer'"],
 )
 write_ome6(
     "six_time.zarr", scale([0.5, 4, 2, 1]), np.stack([values("<f4", step=step) for step in range(3)]), IN_TIME,

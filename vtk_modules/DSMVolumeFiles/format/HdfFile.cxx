@@ -41,7 +41,8 @@ public:
     , IsPlaced(!options.HasSpacing())
     , GoesOn(options.GoesOn)
     , Bytes(std::make_shared<PositionedFile>(path))
-    , File(Open(path, this->IsLive))
+    , Grows(IsLive(*this->Bytes))
+    , File(Open(path, this->Grows))
   {
     const int level = options.Level;
     this->OpenLevel(level);
@@ -224,24 +225,35 @@ private:
     this->File.Reset();
   }
 
-  /// `isLive`: set to whether another program appends to the file (single writer, multiple readers).
-  static HdfHandle Open(const std::string& path, bool& isLive)
+  /// Whether another program appends to the file, or did until it was killed: the superblock says so.
+  static bool IsLive(const PositionedFile& bytes)
   {
-    HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
-    isLive = !file.IsOpen();
-    if (isLive)
+    constexpr std::size_t version = 8;
+    constexpr std::size_t flags = 11;
+    constexpr std::byte appended{ 4 };
+    std::byte superblock[flags + 1]{};
+    if (bytes.GetBytes() >= sizeof(superblock))
     {
-      HdfHandle live(
-        H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), &H5Fclose);
-      if (!live.IsOpen())
-      {
-        throw FileError(path,
-          "cannot be opened as HDF5. It is another kind of file, is damaged, or is open for "
-          "writing. "
-          "A writer that may be read meanwhile has to use SWMR. If the writer has ended without "
-          "closing the file, run 'h5clear -s FILE' (package hdf5-tools).");
-      }
-      return live;
+      bytes.Read(0, superblock, sizeof(superblock));
+    }
+    return superblock[version] == std::byte(3) && (superblock[flags] & appended) != std::byte(0);
+  }
+
+  static HdfHandle Open(const std::string& path, bool isLive)
+  {
+    const HdfHandle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
+    // While another program writes; of a damaged file, they are in vain.
+    constexpr unsigned attempts = 10;
+    H5Pset_metadata_read_attempts(access.Get(), attempts);
+    HdfHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | (isLive ? H5F_ACC_SWMR_READ : 0),
+                     isLive ? access.Get() : H5P_DEFAULT),
+      &H5Fclose);
+    if (!file.IsOpen())
+    {
+      throw FileError(path,
+        "cannot be opened as HDF5. It is another kind of file, is damaged, or is open for writing. "
+        "A writer that may be read meanwhile has to use SWMR. If the writer has ended without "
+        "closing the file, run 'h5clear -s FILE' (package hdf5-tools).");
     }
     return file;
   }
@@ -449,7 +461,7 @@ private:
     CheckSizes(this->Path, array);
     // The library alone knows the chunks of a file that grows.
     const bool isElsewhere =
-      this->Origins.Add(this->Path, this->File.Get(), id.Get()) || this->IsLive;
+      this->Origins.Add(this->Path, this->File.Get(), id.Get()) || this->Grows;
     const bool isOrdered = axes.Order == FastestX;
     const auto cut = isOrdered ? &CutIntoRows : &CutIntoBoxes;
     array.Grid = cut(axes.Samples, array.GetSampleBytes());
@@ -614,7 +626,7 @@ private:
     const Dataset& kept = this->Kept[number];
     const bool isRead = ReadHdfBox(
       dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
-    if (!this->IsLive)
+    if (!this->Grows)
     {
       this->Bytes->CheckUnchanged();
     }
@@ -632,7 +644,7 @@ private:
   std::function<bool()> GoesOn; ///< while the file is being opened
   std::shared_ptr<const PositionedFile> Bytes;
   HdfOrigins Origins;
-  bool IsLive = false; ///< another program appends to it
+  bool Grows; ///< another program appends to it
   HdfHandle File;
   std::optional<HdfHandle> Coarser; ///< the group of a coarser level
   hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file

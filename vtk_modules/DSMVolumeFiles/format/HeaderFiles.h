@@ -16,8 +16,7 @@ namespace vol
 std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions& options);
 
 /// ITK's MetaImage (.mhd, .mha) of three dimensions, compressed or not, in one or several files.
-std::shared_ptr<VolumeFile> OpenMetaImage(
-  const std::string& path, const OpenOptions& options);
+std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path, const OpenOptions& options);
 
 } // namespace vol
 

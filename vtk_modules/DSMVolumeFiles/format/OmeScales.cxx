@@ -35,6 +35,11 @@ public:
   {
     CheckLimit(
       this->Folder, "coordinate transformations", transformations.size(), FileLimits::Axes);
+    if (!transformations.is_array() && !transformations.is_null())
+    {
+      throw FileError(
+        this->Folder, "has invalid metadata: 'coordinateTransformations' is not an array.");
+    }
     for (const Json& one : transformations)
     {
       this->ApplyOne(one, depth);
@@ -171,7 +176,7 @@ private:
       const std::size_t columns = axes + (type == "affine" ? 1 : 0);
       if (numbers.size() != columns)
       {
-        this->Refuse(type, "is no matrix of " + std::to_string(columns) + " columns");
+        this->Refuse(type, "is not a matrix of " + std::to_string(columns) + " columns");
       }
       offset[row] = type == "affine" ? numbers.back() : 0.0;
       for (std::size_t inner = 0; inner < axes; ++inner)

@@ -196,6 +196,11 @@ private:
   std::uint64_t MakeStamp() const
   {
     bricks::ByteHash hash;
+    hash.Add(&this->Geometry, sizeof(this->Geometry));
+    for (const std::vector<double>& positions : this->Coordinates)
+    {
+      hash.Add(positions.data(), positions.size() * sizeof(double));
+    }
     for (std::size_t array = 0; array < this->Sources.size(); ++array)
     {
       const Source& source = this->Sources[array];
