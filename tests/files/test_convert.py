@@ -151,14 +151,35 @@ with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"
         check(np.array_equal(one["VTKHDF"][name], other["VTKHDF"][name]), f"{name} of several arrays")
     check((one["VTKHDF"].attrs["Direction"] == other["VTKHDF"].attrs["Direction"]).all(), "the direction")
     check(other["DSM/PointData/v/ValueRanges"].shape == (4, 4), "ranges of three components and the magnitude")
-for option, value, words in (("--dataset", "f", "does not support choosing a dataset ('f')"), ("--raw-size", "9,9,9", "--raw-size applies to .raw files only"),
-                             ("--spacing", "1,1,2", "--spacing applies to .raw files only")):
+for option, value, words in (("--dataset", "f", "does not support choosing a dataset ('f')"), ("--raw-size", "9,9,9", "--raw-size applies to .raw files only")):
     done = convert(option, value, path("image.vtkhdf"), path("none.vtkhdf"))
     check(done.returncode != 0 and words in done.stderr, f"{option} of no use is refused: {done.stderr.strip()}")
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no array 'nothing'" in done.stderr, "an array that is not there is named")
 done = convert(*BARE[:-1], "1,0,3", path("convert.raw"), path("none.vtkhdf"))
 check(done.returncode != 0 and "--spacing" in done.stderr, f"no spacing: {done.stderr.strip()}")
+
+# What a file says of place and values is kept, unless the user says otherwise.
+done = convert("--quiet", "--spacing", "1,1,2", "--origin", "3,-4,5", "--arrays", "f", path("image.vtkhdf"), path("placed.vtkhdf"))
+check(done.returncode == 0, f"another place {done.stderr}")
+with h5py.File(path("placed.vtkhdf"), "r") as file:
+    place = file["VTKHDF"].attrs
+    check(list(place["Spacing"]) == [1, 1, 2] and list(place["Origin"]) == [3, -4, 5], "it is there")
+done = convert("--quiet", "--arrays", "t", "--step", "1", path("packed.nc"), path("unpacked.vtkhdf"))
+check(done.returncode == 0, f"packed values {done.stderr}")
+with h5py.File(path("unpacked.vtkhdf"), "r") as file, h5py.File(path("packed.nc"), "r") as packed:
+    numbers = packed["t"][1]
+    check(np.array_equal(file["VTKHDF/PointData/t"][...], np.where(numbers == 7, np.nan, 0.25 * numbers + 5).astype("f4"), equal_nan=True),
+          "they are unpacked")
+    check(list(file["VTKHDF"].attrs["Spacing"]) == [1, -0.5, 50], "and where they were")
+done = convert("--quiet", "--levels", "1", "--arrays", "short", path("missing.h5"), path("missing.vtkhdf"))
+check(done.returncode == 0, f"missing values {done.stderr}")
+with h5py.File(path("missing.vtkhdf"), "r") as file:
+    coarse = file["DSM/Levels/1/VTKHDF/PointData/short"]
+    check(all(one.attrs["_FillValue"][0] == -9999 for one in (file["VTKHDF/PointData/short"], coarse)), "they are declared")
+    check(set(np.unique(coarse[...][coarse[...] < 0])) == {-9999}, "and no mean of a coarser level has them")
+done = convert("--quiet", path("uneven.nc"), path("none.vtkhdf"))
+check(done.returncode != 0 and "not evenly spaced" in done.stderr, f"uneven coordinates: {done.stderr.strip()}")
 
 # The names the wrong way round: what was to be read is not replaced.
 done = convert("--quiet", path("image.vtkhdf"), path("convert.raw"))
