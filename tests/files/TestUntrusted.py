@@ -220,7 +220,8 @@ APPEND = """
 import h5py, sys
 file = h5py.File(sys.argv[1], "w", libver="latest")
 values = file.create_dataset("v", (0, 16, 16, 16), "f4", maxshape=(None, 16, 16, 16), chunks=(1, 8, 16, 16))
-file.swmr_mode = sys.argv[2] == "swmr"
+if sys.argv[2] == "swmr":
+    file.swmr_mode = True
 for line in sys.stdin:
     step = values.shape[0]
     values.resize(step + 1, 0)

@@ -4,6 +4,7 @@
 #include "vtkDSMTranslation.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCommand.h"
 #include "vtkObject.h"
 #include "vtkScalarsToColors.h"
 
@@ -106,24 +107,25 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneMember::SampleColors(vtkScalarsTo
 void vtkDSMSceneMember::ReportMessages(bool tells)
 {
   std::vector<std::string> known = this->Reported;
-  const auto isNew = [&known, tells](const std::string& message)
+  vtkAlgorithm* const algorithm = this->GetAlgorithm();
+  const auto isNew = [&](const std::string& message, unsigned long event)
   {
     const bool isKnown = std::find(known.begin(), known.end(), message) != known.end();
     known.push_back(message); // AddTo may have said it more than once
-    return tells && !isKnown;
+    return !isKnown && (tells || algorithm->HasObserver(event));
   };
   for (const std::string& message : this->Messages)
   {
-    if (isNew(message))
+    if (isNew(message, vtkCommand::ErrorEvent))
     {
-      vtkErrorWithObjectMacro(this->GetAlgorithm(), << message);
+      vtkErrorWithObjectMacro(algorithm, << message);
     }
   }
   for (const std::string& warning : this->Warnings)
   {
-    if (isNew(warning))
+    if (isNew(warning, vtkCommand::WarningEvent))
     {
-      vtkWarningWithObjectMacro(this->GetAlgorithm(), << warning);
+      vtkWarningWithObjectMacro(algorithm, << warning);
     }
   }
   this->Reported = this->Messages;

@@ -102,7 +102,8 @@ public:
   /// When a frame last showed it; on every rank in the same order.
   vtkMTimeType GetTimeShown() const { return this->Shown.GetMTime(); }
 
-  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells` them.
+  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells` them; on others
+  /// they reach who observes the error or warning event.
   void ReportMessages(bool tells);
 
 protected:
