@@ -323,7 +323,7 @@ TEST(HostileHeaders, CompressedValuesOfAnotherSizeAreRefused)
       WriteText(folder / ("cut-" + file), other);
       refused(write("cut-" + file, "64 64 64")); // names and times in a gzip header do not count
     }
-    WriteText(folder / ("cut-" + file), whole + "and what nobody needs");
+    WriteText(folder / ("cut-" + file), whole + "trailing bytes unused.");
     EXPECT_EQ(refused(write("cut-" + file, "64 64 64")), "");
     EXPECT_NE(refused(write("cut-" + file, "64 64 65")).find("cut-" + file), std::string::npos);
   }

@@ -28,7 +28,7 @@ plain = {
     # In blocks of 512 bytes; without the number the whole chunk is a block.
     "lz4": ({"chunks": (4, 5, 8), "compression": LZ4, "compression_opts": (512,)}, "<f4"),
     "lz4_whole": ({"chunks": (4, 5, 8), "compression": LZ4}, ">u2"),
-    # No filters of ours: the library reads them, zfp (without loss) with a plugin of Debian's.
+    # The HDF5 library reads these filters. Lossless zfp needs Debian's plugin.
     "scale_offset": ({"chunks": (4, 5, 8), "scaleoffset": 0}, "<i4"),
     "zfp": ({"chunks": (4, 5, 8), "compression": ZFP, "compression_opts": (5, 0, 0, 0, 0, 0)}, "<f4"),
     "signed_char": ({}, "|i1"),

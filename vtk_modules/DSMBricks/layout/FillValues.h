@@ -24,7 +24,7 @@ using LimitedLook = dsm::FunctionRef<LimitedSurvey(const ValueLimits&)>;
 ///   which begins at -1024, as all other values are not (-2000 and -3024, the padding of CT scanners).
 /// A fill that touches every macrocell (a box of 5 x 5 x 5 samples) is not found. `bricks`: ranges of all bricks, of
 /// each lattice; they rule most data out, so that `look` is seldom called. `all` and `bricks` are the same on every rank.
-/// Returns `all` if there is no fill.
+/// Returns `all` if no value is a fill.
 IsovalueSurvey LeaveOutFills(const IsovalueSurvey& all,
   const std::vector<const std::vector<ValueRange>*>& bricks, LimitedLook look);
 

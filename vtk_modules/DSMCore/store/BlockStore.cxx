@@ -29,7 +29,7 @@ namespace
 /// nothing: the rest is for the application.
 constexpr std::uint64_t DefaultDivisor = 2;
 
-/// The default is no less: where a host's memory is nearly used up, small data are shown still.
+/// The default limit is at least this, so that a host whose memory is nearly used up shows small data.
 constexpr std::uint64_t LeastDefaultBytes = std::uint64_t(64) << 20;
 
 /// The time that it takes to put blocks together in a scratch file, as a part of all.

@@ -38,8 +38,8 @@ struct PixelSample
   float LayerDepths[MaxLayers];
   glm::vec4 LayerColors[MaxLayers];
 
-  /// Surfaces must be added front to back. Where there is no room, the two neighbors become one that make the least
-  /// difference to what is drawn between them: the one that contributes less moves to the depth of the other (as nodes
+  /// Surfaces must be added front to back. If all layers are full, two neighbors become one: those that change least what
+  /// is drawn between them. The one that contributes less moves to the depth of the other (as nodes
   /// of the visibility function in Salvi, Montgomery, Lefohn, Adaptive Transparency, 2011). `isMedium`: a surface behind
   /// it that is better seen gives the sample its depth.
   void AddLayer(const glm::vec4& color, float depth, bool isMedium = false)

@@ -20,7 +20,7 @@ const nlohmann::json& Find(const nlohmann::json& configuration, const char* name
 std::int64_t GetInteger(const nlohmann::json& configuration, const char* name, std::int64_t usual,
   std::int64_t least, std::int64_t most);
 
-/// Throws where there is no finite number.
+/// Throws if the member is missing, or is not a finite number.
 double GetNumber(const nlohmann::json& configuration, const char* name);
 
 /// Returns `usual` where there is none, or null. Throws for types that bricks::ScalarType does not have.

@@ -76,7 +76,7 @@ public:
     const auto need =
       static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), values.Samples }.GetCount()) *
       array.GetSampleBytes();
-    PackedValues packed;
+    CompressedValues packed;
     packed.Encoding = values.Encoding;
     packed.Skip = values.Skip;
     packed.PartBytes = need / values.Paths.size();
@@ -89,7 +89,7 @@ public:
     // apply.
     bricks::ByteHash hash;
     std::vector<ValuePart> parts;
-    for (const PackedValues::Part& part : packed.Parts)
+    for (const CompressedValues::Part& part : packed.Parts)
     {
       const std::uint64_t place[] = { part.Place.Stamp, part.Place.Offset };
       hash.Add(place, sizeof(place));
@@ -205,7 +205,7 @@ private:
   }
 
   /// Looks at a file of values. Throws dsm::Error where it is too short.
-  PackedValues::Part FindPart(
+  CompressedValues::Part FindPart(
     const std::string& path, const BareValues& values, std::uint64_t need) const
   {
     const PositionedFile file(path);

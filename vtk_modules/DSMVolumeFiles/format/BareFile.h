@@ -24,14 +24,14 @@ struct BareValues
   /// All samples of a component follow one another; else the components of a sample do.
   bool ComponentsApart = false;
   bool BigEndian = false;
-  /// Of each file, before the first value or compressed byte; negative: they are at the end of the file.
+  /// Bytes of each file before its first value, or its first compressed byte. Negative: the values end the file.
   std::int64_t Offset = 0;
   /// Lines of text in each file that the offset counts from.
   std::int64_t Lines = 0;
   /// Smallest valid offset: the end of the header, if the file itself has one.
   std::int64_t Least = 0;
   StreamEncoding Encoding = StreamEncoding::Plain;
-  /// Of each file, where it is compressed: unpacked bytes before its values, or -1 (PackedValues::Skip).
+  /// Of each file, where it is compressed: unpacked bytes before its values, or -1 (CompressedValues::Skip).
   std::int64_t Skip = 0;
   /// Compressed bytes in each file; 0: all that follow.
   std::int64_t PackedBytes = 0;

@@ -393,9 +393,9 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
     Turn(folder, placement, found);
     return found;
   }
-  const bool hasTranslation = std::any_of(datasets.begin(), datasets.end(),
-    [&](const Json& one) { return Place(folder, scale, one, readNumbers).HasTranslation(); });
-  if (level > 0 && !hasTranslation)
+  const auto hasTranslation = [&](const Json& one)
+  { return Place(folder, scale, one, readNumbers).HasTranslation(); };
+  if (level > 0 && std::none_of(datasets.begin(), datasets.end(), hasTranslation))
   {
     std::vector<std::string> known;
     const OmeLevel finest = OmeLevel::Find(folder, scale, 0, readNumbers, known);

@@ -41,7 +41,7 @@ void CheckGoesOn(const std::string& path, const std::function<bool()>& goesOn)
 
 /// Calls `take` with the unpacked bytes of a part, piece after piece, until its last stream ends or `take` has enough.
 template <class Take>
-void UnpackPart(const PackedValues& packed, const PackedValues::Part& part,
+void UnpackPart(const CompressedValues& packed, const CompressedValues::Part& part,
   const std::function<bool()>& goesOn, const Take& take)
 {
   const PositionedFile file(part.Place.Path);
@@ -90,8 +90,8 @@ void UnpackPart(const PackedValues& packed, const PackedValues::Part& part,
   }
 }
 
-std::uint64_t CountUnpacked(
-  const PackedValues& packed, const PackedValues::Part& part, const std::function<bool()>& goesOn)
+std::uint64_t CountUnpacked(const CompressedValues& packed, const CompressedValues::Part& part,
+  const std::function<bool()>& goesOn)
 {
   std::uint64_t count = 0;
   UnpackPart(packed, part, goesOn,
@@ -103,7 +103,7 @@ std::uint64_t CountUnpacked(
   return count;
 }
 
-std::filesystem::path FindPlace(const PackedValues& packed)
+std::filesystem::path FindPlace(const CompressedValues& packed)
 {
   const std::string& path = packed.Parts.front().Place.Path;
   const std::filesystem::path folder = GetCacheFolder();
@@ -116,7 +116,7 @@ std::filesystem::path FindPlace(const PackedValues& packed)
   std::error_code failure;
   std::filesystem::create_directories(folder, failure); // writing reports a failure
   bricks::ByteHash hash;
-  for (const PackedValues::Part& part : packed.Parts)
+  for (const CompressedValues::Part& part : packed.Parts)
   {
     const std::string whole = std::filesystem::absolute(part.Place.Path, failure).string();
     const std::uint64_t numbers[] = { part.Place.Offset, part.Place.Stamp, part.PackedBytes };
@@ -129,9 +129,9 @@ std::filesystem::path FindPlace(const PackedValues& packed)
   return ValueCopy::GetPath(folder, hash.Get());
 }
 
-void UnpackTo(ValueCopy& copy, const PackedValues& packed, const std::function<bool()>& goesOn)
+void UnpackTo(ValueCopy& copy, const CompressedValues& packed, const std::function<bool()>& goesOn)
 {
-  for (const PackedValues::Part& part : packed.Parts)
+  for (const CompressedValues::Part& part : packed.Parts)
   {
     try
     {
@@ -179,11 +179,11 @@ void UnpackTo(ValueCopy& copy, const PackedValues& packed, const std::function<b
 
 } // namespace
 
-ValuePart UnpackOnce(const PackedValues& packed, const std::function<bool()>& goesOn)
+ValuePart UnpackOnce(const CompressedValues& packed, const std::function<bool()>& goesOn)
 {
   const std::string& path = packed.Parts.front().Place.Path;
   const std::uint64_t growth = StreamDecoder::GetMostGrowth(packed.Encoding);
-  for (const PackedValues::Part& part : packed.Parts)
+  for (const CompressedValues::Part& part : packed.Parts)
   {
     const auto most = MultiplyWithin(FileLimits::ArrayBytes, { part.PackedBytes, growth });
     if (most && *most < packed.PartBytes)

@@ -13,7 +13,7 @@ namespace vol
 {
 
 /// Values of an array that are compressed in one piece, or in several files of equally many values.
-struct PackedValues
+struct CompressedValues
 {
   struct Part
   {
@@ -34,7 +34,7 @@ struct PackedValues
 ///
 /// Throws dsm::Error, which names the file, where the unpacked bytes are not as many as expected or damaged, or there is
 /// no room.
-ValuePart UnpackOnce(const PackedValues& packed, const std::function<bool()>& goesOn);
+ValuePart UnpackOnce(const CompressedValues& packed, const std::function<bool()>& goesOn);
 
 } // namespace vol
 

@@ -343,11 +343,11 @@ private:
   }
 
   /// What the array in a folder, and those beside it that have the names of its axes, say of its axes.
-  AxisNotes ReadNotes(const std::string& folder, const ZarrMetadata& data) const
+  static AxisNotes ReadNotes(
+    const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
   {
     AxisNotes notes = NameAxes(folder, data);
     const std::size_t count = data.Shape.size();
-    const ZarrAxes axes = ZarrAxes::Find(folder, notes, count);
     TakeVoxelSize([&](const char* name)
       { return ZarrJson::ToNumbers(ZarrJson::Find(data.Attributes, name)); },
       notes, static_cast<std::size_t>(axes.Leading));
@@ -377,11 +377,10 @@ private:
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      const AxisNotes notes = this->ReadNotes(folder, *data);
-      const ZarrAxes axes = ZarrAxes::Find(folder, notes, data->Shape.size());
+      const ZarrAxes axes = ZarrAxes::Find(folder, NameAxes(folder, *data), data->Shape.size());
       if (this->Arrays.empty())
       {
-        this->LocateBy(notes, axes, data->Shape);
+        this->LocateBy(ReadNotes(folder, *data, axes), axes, data->Shape);
       }
       this->Add(folder, data, axes,
         [&](std::int64_t channel, std::int64_t count)

@@ -409,8 +409,8 @@ void vtkDSMVolumeReader::CreateOutput(vtkInformation* information)
   vtkDSMErrorGuard::Try("opening", this->GetFileName(),
     [&] { isUneven = this->OpenIfDescribed() && !this->Self->File->IsEvenlySpaced(); });
   const int type = isUneven ? VTK_RECTILINEAR_GRID : VTK_IMAGE_DATA;
-  const vtkDataObject* const now = information->Get(vtkDataObject::DATA_OBJECT());
-  if (!now || const_cast<vtkDataObject*>(now)->GetDataObjectType() != type)
+  vtkDataObject* const now = information->Get(vtkDataObject::DATA_OBJECT());
+  if (!now || now->GetDataObjectType() != type)
   {
     const auto grid = isUneven
       ? vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkRectilinearGrid>::New())
