@@ -49,6 +49,18 @@ note(
     origin=[10.0, 60.0, 0.0], spacing=[1.0, -0.5, 1.0], coordinates=[[], [], list(UNEVEN)],
 )
 
+# Coordinates of two axes, as of a curved grid; coordinates of one number are no positions.
+with netCDF4.Dataset(path("curved.nc"), "w") as file:
+    for name, length in zip("xyz", SIZE):
+        file.createDimension(name, length)
+    for name in ("lon", "lat"):
+        file.createVariable(name, "f4", ("y", "x"))[:] = 1.0
+    file.createVariable("height", "f4", ())[:] = 2.0
+    for name in ("t", "u"):
+        file.createVariable(name, "f4", ("z", "y", "x"))[:] = values("<f4")
+        file[name].coordinates, file[name].grid_mapping = "height lon lat", "pole"
+note("curved.nc", [("t", "float32"), ("u", "float32")], warnings=["'lon', 'lat'", "'pole'"])
+
 # openPMD: axes in either order, an offset, samples in the middle of cells.
 for name, labels, order, data in (
     ("open_c.h5", "xyz", "C", values("<f4").transpose(2, 1, 0)),
@@ -63,7 +75,25 @@ for name, labels, order, data in (
         turn = 1 if labels == "xyz" else -1
         rho.attrs["gridSpacing"], rho.attrs["gridGlobalOffset"] = [1.0, 2.0, 4.0][::turn], [0.0, 0.0, -16.0][::turn]
         rho.attrs["gridUnitSI"], rho.attrs["position"], rho.attrs["unitSI"] = 0.5, [0.5] * 3, 1.0
-    note(name, [("data/7/fields/rho", "float32")], spacing=[0.5, 1.0, 2.0], origin=[0.25, 0.5, -7.0])
+    note(name, [("rho", "float32")], spacing=[0.5, 1.0, 2.0], origin=[0.25, 0.5, -7.0])
+
+# Iterations, whose order is that of numbers, with values kept in several ways. One mesh lies elsewhere and moves, one is in one only.
+with h5py.File(path("open_steps.h5"), "w") as file:
+    file.attrs["openPMD"], file.attrs["basePath"], file.attrs["meshesPath"] = "1.1.0", "/data/%T/", "fields/"
+    for step, (iteration, kept) in enumerate(((7, {"chunks": (4, 5, 8), "compression": "gzip"}), (20, {}), (100, {"chunks": (2, 7, 9)}))):
+        group = file.create_group(f"data/{iteration}")
+        group.attrs["time"], group.attrs["timeUnitSI"] = 3.0 * step, 0.5
+        for name, place in (("E/x", 0.5), ("rho", 0.0)) + ((("once", 0.0),) if step == 1 else ()):
+            mesh = group.create_dataset(f"fields/{name}", data=values("<f4" if step < 2 else ">f4", step=step), **kept)
+            mesh.attrs["position"] = [0.0, 0.0, place]
+            record = mesh.parent if "/" in name else mesh
+            record.attrs["axisLabels"], record.attrs["dataOrder"] = np.array([b"z", b"y", b"x"]), np.bytes_("C")
+            record.attrs["gridSpacing"], record.attrs["gridUnitSI"] = [1.0] * 3, 1.0
+            record.attrs["gridGlobalOffset"] = [0.0, 0.0, 5.0 if step == 2 and name == "rho" else 0.0]
+note(
+    "open_steps.h5", [("E/x", "float32"), ("rho", "float32")], steps=3, origin=[0.5, 0.0, 0.0], times=[0.0, 1.5, 3.0],
+    warnings=["'once'", "'rho' at positions that differ", "'rho'"],
+)
 
 # EMD, whose first axis is x; voxel sizes; axes of one sample.
 with h5py.File(path("emd.h5"), "w") as file:
@@ -100,6 +130,22 @@ for name, told in attributes.items():
     with open(path("cf.zarr/" + (name or "t") + "/.zattrs"), "w", encoding="utf-8") as file:
         json.dump(told, file)
 note("cf.zarr", [("t", "float32")], packing=PACKED, **PLACE)
+
+# A group whose first array is still, and has CF's coordinates of two axes; the other one has times.
+zarr.open_group(path("mixed_times.zarr"), mode="w", **LATER)
+for name, data, told in (
+    ("a", values("<f4"), {"_ARRAY_DIMENSIONS": ["z", "y", "x"], "coordinates": "curved z", "grid_mapping": "pole"}),
+    ("b", np.stack([values("<f4", step=step) for step in range(2)]), {"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]}),
+    ("curved", np.zeros(SIZE[1::-1]), {"_ARRAY_DIMENSIONS": ["y", "x"]}),
+    ("time", np.array([2.0, 5.0]), {"_ARRAY_DIMENSIONS": ["time"]}),
+):
+    save_zarr(f"mixed_times.zarr/{name}", data, chunks=data.shape)
+    with open(path(f"mixed_times.zarr/{name}/.zattrs"), "w", encoding="utf-8") as file:
+        json.dump(told, file)
+note(
+    "mixed_times.zarr", [("a", "float32", 1, 0, False, True), ("b", "float32")], steps=2, times=[2.0, 5.0],
+    warnings=["'curved'", "'grid_mapping'"],
+)
 
 
 # Axes in an order of their own, in chunks with a filter and without one.

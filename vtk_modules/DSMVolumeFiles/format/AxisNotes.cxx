@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 namespace vol
@@ -259,6 +260,33 @@ void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute
       }
       return;
     }
+  }
+}
+
+void WarnOfOtherPlaces(const std::function<std::string(const char* attribute)>& getText,
+  const std::function<std::size_t(const std::string& name)>& countAxes,
+  std::vector<std::string>& warnings)
+{
+  std::istringstream words(getText("coordinates"));
+  std::string curved;
+  for (std::string word; words >> word;)
+  {
+    // Names come from the file: none leads elsewhere.
+    if (word.find('/') == std::string::npos && word != ".." && countAxes(word) > 1)
+    {
+      curved += (curved.empty() ? "'" : ", '") + word + "'";
+    }
+  }
+  if (!curved.empty())
+  {
+    warnings.push_back("has 'coordinates' of several axes (" + curved +
+      "), which are not honored. Its arrays are shown along their own axes.");
+  }
+  const std::string mapping = getText("grid_mapping");
+  if (!mapping.empty())
+  {
+    warnings.push_back("has the 'grid_mapping' " + Quote(mapping) +
+      ", which is not honored. Its arrays are shown at the coordinates of their axes.");
   }
 }
 

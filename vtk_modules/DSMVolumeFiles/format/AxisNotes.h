@@ -51,6 +51,13 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
 void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute)>& getNumbers,
   AxisNotes& notes, std::size_t first);
 
+/// Adds a sentence to `warnings` for each of CF's attributes of places that are not along the axes of an array: "coordinates" of
+/// two and more axes, and "grid_mapping" of a projection. `getText(attribute)`: of the array; empty: none. `countAxes(name)`:
+/// of an array beside it; 0: there is none.
+void WarnOfOtherPlaces(const std::function<std::string(const char* attribute)>& getText,
+  const std::function<std::size_t(const std::string& name)>& countAxes,
+  std::vector<std::string>& warnings);
+
 /// Returns the times of steps: a time axis's coordinates, where they are as many and rise; else none, with a sentence
 /// in `warnings` where there are other ones.
 std::vector<double> FindTimes(const AxisNote& note, int steps, std::vector<std::string>& warnings);

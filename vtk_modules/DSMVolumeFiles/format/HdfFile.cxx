@@ -22,6 +22,7 @@
 #include <array>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -94,7 +95,7 @@ public:
   void ReadChunk(
     std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const override
   {
-    if (this->Kept[array].ReadByLibrary)
+    if (this->GetDataset(array, step).ReadByLibrary)
     {
       this->Unpack(array, this->Arrays[array].Grid.GetBox(chunk).GetCount(), out,
         [&](std::byte* to) { this->ReadByLibrary(array, step, chunk, to); });
@@ -127,9 +128,12 @@ public:
   std::uint64_t GetTableBytes() const override
   {
     std::uint64_t bytes = 0;
-    for (const Dataset& dataset : this->Kept)
+    for (const std::vector<Dataset>& steps : this->Kept)
     {
-      bytes += dataset.Chunks ? dataset.Chunks->GetBytes() : 0;
+      for (const Dataset& dataset : steps)
+      {
+        bytes += dataset.Chunks ? dataset.Chunks->GetBytes() : 0;
+      }
     }
     return bytes;
   }
@@ -138,7 +142,7 @@ protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const bricks::Index3& chunk) const override
   {
-    const Dataset& dataset = this->Kept[array];
+    const Dataset& dataset = this->GetDataset(array, step);
     if (dataset.ReadByLibrary)
     {
       return std::nullopt; // nobody else knows
@@ -180,7 +184,7 @@ protected:
 
   bool IsMissing(std::size_t array, int step, const bricks::Index3& chunk) const override
   {
-    return !this->Kept[array].ReadByLibrary && !this->FindChunk(array, step, chunk);
+    return !this->GetDataset(array, step).ReadByLibrary && !this->FindChunk(array, step, chunk);
   }
 
 private:
@@ -205,6 +209,21 @@ private:
     }
   };
 
+  /// An array with what says where its values are.
+  struct Layout
+  {
+    FileArray Array;
+    Storage Values;
+    Dataset Origin;
+    std::vector<CodecStep> Steps;
+  };
+
+  const Dataset& GetDataset(std::size_t array, int step) const
+  {
+    const std::vector<Dataset>& steps = this->Kept[array];
+    return steps.size() == 1 ? steps.front() : steps[static_cast<std::size_t>(step)];
+  }
+
   /// Those there are. Under the lock.
   static std::set<HdfFile*>& GetOpened()
   {
@@ -216,9 +235,12 @@ private:
   /// more.
   void Close()
   {
-    for (Dataset& dataset : this->Kept)
+    for (std::vector<Dataset>& steps : this->Kept)
     {
-      dataset.Id.Reset();
+      for (Dataset& dataset : steps)
+      {
+        dataset.Id.Reset();
+      }
     }
     this->Coarser.reset();
     this->Root = H5I_INVALID_HID;
@@ -344,7 +366,7 @@ private:
       {
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
         std::vector<int> frames = this->FindFrames(parent, offsets, found);
-        this->Add(std::move(dataset), link, onCells, found, std::move(frames));
+        this->Add(this->FindLayout(std::move(dataset), link, onCells, found, std::move(frames)));
       }
     }
   }
@@ -395,21 +417,33 @@ private:
     const HdfVolumes volumes = HdfVolumes::Find(this->File.Get(), this->Path, wanted);
     this->Missing = volumes.Missing;
     this->Geometry.Points = volumes.Shape.Samples;
-    this->Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
+    this->Warnings = volumes.Warnings;
+    this->Steps = volumes.Steps;
+    this->Times = volumes.Times;
+    std::vector<std::string> displaced;
     for (const HdfVolume& volume : volumes.Found)
     {
-      this->LocateBy(volume);
-      this->Add(OpenHdfDataset(this->File.Get(), volume.Name), volume.Name, false, volume.Axes, {});
+      if (!this->LocateBy(volume))
+      {
+        displaced.push_back(volume.Name);
+      }
+      this->AddSteps(volume);
+    }
+    if (!displaced.empty())
+    {
+      this->Warnings.push_back("has arrays at different positions. All are shown at those of " +
+        Quote(this->Arrays.front().Name) +
+        ". Arrays at other positions: " + ListHdfNames(displaced));
     }
   }
 
-  /// By the first of the datasets, whose place is all datasets'.
-  void LocateBy(const HdfVolume& volume)
+  /// By the first of the datasets, whose place is all datasets'. Returns whether it is this one's.
+  bool LocateBy(const HdfVolume& volume)
   {
     this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
     if (volume.Notes.size() != volume.Axes.Rank)
     {
-      return;
+      return true;
     }
     FileGeometry place;
     place.Points = this->Geometry.Points;
@@ -425,25 +459,84 @@ private:
     {
       PlaceAxes(this->Path, inSpace, place, coordinates, warnings);
     }
-    if (this->Arrays.empty())
-    {
-      this->Geometry = place;
-      this->Coordinates = std::move(coordinates);
-      this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
-    }
-    else if (!IsSamePlace(place, this->Geometry) || coordinates != this->Coordinates)
-    {
-      this->Warnings.push_back("has arrays at different positions. Array " + Quote(volume.Name) +
-        " is shown at those of " + Quote(this->Arrays.front().Name) + ".");
-    }
     if (volume.Axes.Time && this->Times.empty())
     {
       this->Times = FindTimes(volume.Notes[*volume.Axes.Time], this->Steps, this->Warnings);
     }
+    if (!this->Arrays.empty())
+    {
+      return IsSamePlace(place, this->Geometry) && coordinates == this->Coordinates;
+    }
+    this->Geometry = place;
+    this->Coordinates = std::move(coordinates);
+    this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
+    return true;
   }
 
-  void Add(HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes,
-    std::vector<int> frames)
+  void Add(std::optional<Layout> layout)
+  {
+    if (layout)
+    {
+      this->Arrays.push_back(std::move(layout->Array));
+      this->Storages.push_back(std::move(layout->Values));
+      this->Kept.emplace_back().push_back(std::move(layout->Origin));
+    }
+  }
+
+  /// Adds an array whose steps are datasets of one shape.
+  void AddSteps(const HdfVolume& volume)
+  {
+    const auto find = [&](const std::string& dataset)
+    {
+      return this->FindLayout(
+        OpenHdfDataset(this->File.Get(), dataset), volume.Name, false, volume.Axes, {});
+    };
+    std::optional<Layout> first = find(volume.Datasets.front());
+    std::vector<Dataset> others;
+    for (std::size_t step = 1; first && step < volume.Datasets.size(); ++step)
+    {
+      std::optional<Layout> next = find(volume.Datasets[step]);
+      if (!next || next->Values.Packed.GetStamp() != first->Values.Packed.GetStamp())
+      {
+        throw FileError(this->Path,
+          "has dataset '" + volume.Datasets[step] +
+            "' with another 'scale_factor' or 'add_offset' than '" + volume.Datasets.front() +
+            "'. Give the path of one of them.");
+      }
+      Dataset& dataset = next->Origin;
+      if (!IsAlike(*next, *first))
+      {
+        // The library cuts and converts its values as the first one's are.
+        dataset.ReadByLibrary = true;
+        dataset.Chunks.reset();
+        dataset.Type = first->Origin.Type;
+      }
+      others.push_back(std::move(dataset));
+    }
+    this->Add(std::move(first));
+    if (!others.empty())
+    {
+      std::move(others.begin(), others.end(), std::back_inserter(this->Kept.back()));
+    }
+  }
+
+  /// Returns whether the values of two arrays of one shape can be found in one way.
+  static bool IsAlike(const Layout& a, const Layout& b)
+  {
+    const auto isSameStep = [](const CodecStep& one, const CodecStep& other)
+    {
+      return one.What == other.What && one.With.Width == other.With.Width &&
+        one.With.Numbers == other.With.Numbers;
+    };
+    return a.Array.Type == b.Array.Type && a.Array.Grid.ChunkSamples == b.Array.Grid.ChunkSamples &&
+      a.Values.StoredSamples == b.Values.StoredSamples &&
+      a.Values.HasWholeChunks == b.Values.HasWholeChunks && a.Values.Slices == b.Values.Slices &&
+      a.Values.Fill == b.Values.Fill &&
+      std::equal(a.Steps.begin(), a.Steps.end(), b.Steps.begin(), b.Steps.end(), isSameStep);
+  }
+
+  std::optional<Layout> FindLayout(HdfHandle id, const std::string& name, bool onCells,
+    const HdfAxes& axes, std::vector<int> frames)
   {
     FileArray array;
     array.Name = name;
@@ -452,7 +545,7 @@ private:
     const std::optional<HdfValues> values = FindHdfValues(id.Get());
     if (!values)
     {
-      return;
+      return std::nullopt;
     }
     array.Type = values->Type;
     array.Grid.Samples = axes.Samples;
@@ -510,7 +603,7 @@ private:
     }
     if (!dataset.ReadByLibrary)
     {
-      storage.Codec = this->CreateCodec(name, std::move(steps));
+      storage.Codec = this->CreateCodec(name, steps);
     }
     if (!dataset.ReadByLibrary && storage.Slices == 1)
     {
@@ -526,9 +619,7 @@ private:
     }
     array.Type = storage.Packed.GetType();
     array.Valid = storage.Packed.GetValid();
-    this->Arrays.push_back(std::move(array));
-    this->Storages.push_back(std::move(storage));
-    this->Kept.push_back(std::move(dataset));
+    return Layout{ std::move(array), std::move(storage), std::move(dataset), std::move(steps) };
   }
 
   PackedValues FindPacking(hid_t dataset, bricks::ScalarType stored, const std::string& name)
@@ -622,8 +713,8 @@ private:
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     const FileArray& array = this->Arrays[number];
-    const hid_t dataset = this->Kept[number].Id.Get();
-    const Dataset& kept = this->Kept[number];
+    const Dataset& kept = this->GetDataset(number, step);
+    const hid_t dataset = kept.Id.Get();
     const bool isRead = ReadHdfBox(
       dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
     if (!this->Grows)
@@ -646,10 +737,10 @@ private:
   HdfOrigins Origins;
   bool Grows; ///< another program appends to it
   HdfHandle File;
-  std::optional<HdfHandle> Coarser; ///< the group of a coarser level
-  hid_t Root = H5I_INVALID_HID;     ///< of the level: that group, or the file
-  std::vector<Dataset> Kept;        ///< of the arrays
-  std::string Missing;              ///< what there must be, where there is no array
+  std::optional<HdfHandle> Coarser;       ///< the group of a coarser level
+  hid_t Root = H5I_INVALID_HID;           ///< of the level: that group, or the file
+  std::vector<std::vector<Dataset>> Kept; ///< of each array: one for all steps, or one for each
+  std::string Missing;                    ///< what there must be, where there is no array
 };
 
 } // namespace

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace vol
 {
@@ -184,6 +186,15 @@ AxisNotes ReadHdfNotes(hid_t file, hid_t dataset, std::vector<std::string>& warn
   AxisNotes notes = ReadOpenPmd(file, dataset, shape, warnings);
   notes = notes.empty() ? ReadEmd(file, dataset, shape) : std::move(notes);
   notes = notes.empty() ? ReadScales(file, dataset, shape) : std::move(notes);
+  const std::string path = GetPath(dataset);
+  const std::string group = path.substr(0, path.rfind('/') + 1);
+  WarnOfOtherPlaces([=](const char* name) { return ReadHdfText(dataset, name); },
+    [&](const std::string& name)
+    {
+      const HdfHandle beside = OpenHdfDataset(file, group + name);
+      return beside.IsOpen() ? GetHdfShape(beside.Get()).size() : 0;
+    },
+    warnings);
   const bool isPlaced = std::any_of(notes.begin(), notes.end(),
     [](const AxisNote& note)
     { return !note.Coordinates.empty() || note.Spacing != 1.0 || note.Origin != 0.0; });

@@ -4,8 +4,10 @@
 #include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
+#include "DSMVolumeFiles/format/OpenPmdSteps.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace vol
@@ -51,6 +53,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     const std::vector<hsize_t> shape = GetHdfShape(dataset.Get());
     HdfVolume volume;
     volume.Name = name;
+    volume.Datasets = { name };
     volume.Notes = ReadHdfNotes(file, dataset.Get(), volume.Warnings);
     std::string tooLong;
     if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, volume.Notes, &tooLong))
@@ -73,9 +76,16 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     std::remove_if(found.begin(), found.end(),
       [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
     found.end());
+  volumes.Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
+  if (wanted.empty())
+  {
+    JoinOpenPmdSteps(file, volumes);
+  }
   std::sort(found.begin(), found.end(),
     [](const HdfVolume& a, const HdfVolume& b) { return a.Name < b.Name; });
-  volumes.Missing = DescribeMissing(file, wanted, others);
+  volumes.Missing = found.empty() && !volumes.Warnings.empty()
+    ? "mesh that all iterations have in one form. Give the path of a dataset."
+    : DescribeMissing(file, wanted, others);
   return volumes;
 }
 

@@ -16,7 +16,8 @@ namespace vol
 /// A dataset that holds a volume, and what is known of its axes.
 struct HdfVolume
 {
-  std::string Name; ///< path in the file
+  std::string Name;                  ///< path in the file, or in each iteration of an openPMD file
+  std::vector<std::string> Datasets; ///< paths in the file: of all steps, or one of each
   HdfAxes Axes;
   AxisNotes Notes;
   std::vector<std::string> Warnings; ///< as VolumeFile has them
@@ -27,6 +28,9 @@ struct HdfVolumes
 {
   VolumeShape Shape;
   std::vector<HdfVolume> Found;
+  int Steps = 1;
+  std::vector<double> Times;         ///< of the steps; empty: as the axes tell
+  std::vector<std::string> Warnings; ///< as VolumeFile has them
   std::string Missing; ///< what there must be, where none is found, as the end of a sentence
 
   /// `wanted`: the path of a dataset; empty: all are looked at. Throws dsm::Error, which names the file, where an axis is too

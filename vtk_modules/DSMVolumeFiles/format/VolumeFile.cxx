@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <limits>
 #include <new>
+#include <set>
 #include <stdexcept>
 
 namespace vol
@@ -238,6 +239,14 @@ void VolumeFile::SetPlace(const OpenOptions& options)
   }
 }
 
+void VolumeFile::DropRepeatedWarnings()
+{
+  std::set<std::string> known;
+  const auto isRepeated = [&](const std::string& warning) { return !known.insert(warning).second; };
+  this->Warnings.erase(
+    std::remove_if(this->Warnings.begin(), this->Warnings.end(), isRepeated), this->Warnings.end());
+}
+
 std::string DescribeShape(const bricks::Index3& samples)
 {
   return std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " +
@@ -356,6 +365,7 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
 {
   auto file = OpenGuarded(path, options);
   file->SetPlace(options);
+  file->DropRepeatedWarnings();
   CheckGeometry(path, file->GetGeometry());
   if (options.Level != 0 && options.Level >= file->GetLevels())
   {

@@ -166,6 +166,8 @@ public:
 
   /// Before anybody else has the file: takes spacing and origin where the options have them.
   void SetPlace(const OpenOptions& options);
+  /// Likewise: several arrays may have the same ones.
+  void DropRepeatedWarnings();
 
 protected:
   explicit VolumeFile(std::string path);

@@ -259,7 +259,8 @@ private:
       const std::string finest = ZarrJson::GetText(this->Path, datasets.front(), "path");
       PlaceInFinest(Read(JoinInside(this->Path, finest))->Shape, data->Shape, axes, found.Axes);
     }
-    this->LocateBy(found.Axes, axes, data->Shape);
+    this->PlaceBy(found.Axes, axes, data->Shape);
+    this->TimeBy(found.Axes, axes, data->Shape);
     if (found.Direction)
     {
       std::copy(found.Direction->begin(), found.Direction->end(), this->Geometry.Direction);
@@ -302,10 +303,9 @@ private:
   }
 
   /// By what the file says of the axes of an array of this shape.
-  void LocateBy(
-    const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
+  void PlaceBy(const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
   {
-    if (notes.size() != shape.size())
+    if (notes.size() != shape.size() || !this->IsPlaced)
     {
       return;
     }
@@ -314,11 +314,13 @@ private:
     {
       inSpace[static_cast<std::size_t>(axis)] = &notes[axes.FindInSpace(shape.size(), axis)];
     }
-    if (this->IsPlaced)
-    {
-      PlaceAxes(this->Path, inSpace, this->Geometry, this->Coordinates, this->Warnings);
-    }
-    if (axes.Time >= 0)
+    PlaceAxes(this->Path, inSpace, this->Geometry, this->Coordinates, this->Warnings);
+  }
+
+  /// Likewise, by the first array with a time axis.
+  void TimeBy(const AxisNotes& notes, const ZarrAxes& axes, const std::vector<std::int64_t>& shape)
+  {
+    if (axes.Time >= 0 && this->Times.empty() && notes.size() == shape.size())
     {
       const auto time = static_cast<std::size_t>(axes.Time);
       const auto most = static_cast<std::int64_t>(FileLimits::Steps);
@@ -371,6 +373,29 @@ private:
     return notes;
   }
 
+  void WarnOfPlaces(const std::string& folder, const ZarrMetadata& data)
+  {
+    const std::string beside = std::filesystem::path(folder).parent_path().string();
+    const auto getText = [&](const char* name)
+    {
+      const Json& found = ZarrJson::Find(data.Attributes, name);
+      return found.is_string() ? found.get<std::string>() : std::string();
+    };
+    const auto countAxes = [&](const std::string& name) -> std::size_t
+    {
+      try
+      {
+        const auto other = ReadZarrMetadata(beside + "/" + name);
+        return other ? other->Shape.size() : 0;
+      }
+      catch (const dsm::Error&)
+      {
+        return 0; // nor can it place anything
+      }
+    };
+    WarnOfOtherPlaces(getText, countAxes, this->Warnings);
+  }
+
   /// The path is an array, or a group of arrays.
   void OpenArrays()
   {
@@ -378,10 +403,17 @@ private:
     {
       const auto data = Read(folder);
       const ZarrAxes axes = ZarrAxes::Find(folder, NameAxes(folder, *data), data->Shape.size());
-      if (this->Arrays.empty())
+      const bool isFirst = this->Arrays.empty();
+      if (isFirst || (axes.Time >= 0 && this->Times.empty()))
       {
-        this->LocateBy(ReadNotes(folder, *data, axes), axes, data->Shape);
+        const AxisNotes notes = ReadNotes(folder, *data, axes);
+        if (isFirst)
+        {
+          this->PlaceBy(notes, axes, data->Shape);
+        }
+        this->TimeBy(notes, axes, data->Shape);
       }
+      this->WarnOfPlaces(folder, *data);
       this->Add(folder, data, axes,
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
