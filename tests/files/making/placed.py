@@ -77,14 +77,16 @@ for name, labels, order, data in (
         rho.attrs["gridUnitSI"], rho.attrs["position"], rho.attrs["unitSI"] = 0.5, [0.5] * 3, 1.0
     note(name, [("rho", "float32")], spacing=[0.5, 1.0, 2.0], origin=[0.25, 0.5, -7.0])
 
-# Iterations, whose order is that of numbers, with values kept in several ways. One mesh lies elsewhere and moves, one is in one only.
+# Iterations, whose order is that of numbers, with values kept in several ways. One mesh
+# lies elsewhere and moves, one is in one only, one has numbers of several types.
 with h5py.File(path("open_steps.h5"), "w") as file:
     file.attrs["openPMD"], file.attrs["basePath"], file.attrs["meshesPath"] = "1.1.0", "/data/%T/", "fields/"
     for step, (iteration, kept) in enumerate(((7, {"chunks": (4, 5, 8), "compression": "gzip"}), (20, {}), (100, {"chunks": (2, 7, 9)}))):
         group = file.create_group(f"data/{iteration}")
         group.attrs["time"], group.attrs["timeUnitSI"] = 3.0 * step, 0.5
-        for name, place in (("E/x", 0.5), ("rho", 0.0)) + ((("once", 0.0),) if step == 1 else ()):
-            mesh = group.create_dataset(f"fields/{name}", data=values("<f4" if step < 2 else ">f4", step=step), **kept)
+        for name, place in (("E/x", 0.5), ("mixed", 0.5), ("rho", 0.0)) + ((("once", 0.0),) if step == 1 else ()):
+            dtype = "<i2" if name == "mixed" and step == 1 else ("<f4", "<f4", ">f4")[step]
+            mesh = group.create_dataset(f"fields/{name}", data=values(dtype, step=step), **kept)
             mesh.attrs["position"] = [0.0, 0.0, place]
             record = mesh.parent if "/" in name else mesh
             record.attrs["axisLabels"], record.attrs["dataOrder"] = np.array([b"z", b"y", b"x"]), np.bytes_("C")
@@ -92,7 +94,7 @@ with h5py.File(path("open_steps.h5"), "w") as file:
             record.attrs["gridGlobalOffset"] = [0.0, 0.0, 5.0 if step == 2 and name == "rho" else 0.0]
 note(
     "open_steps.h5", [("E/x", "float32"), ("rho", "float32")], steps=3, origin=[0.5, 0.0, 0.0], times=[0.0, 1.5, 3.0],
-    warnings=["'once'", "'rho' at positions that differ", "'rho'"],
+    warnings=["'once'", "'mixed' is not shown", "'rho' at positions that differ", "'rho'"],
 )
 
 # EMD, whose first axis is x; voxel sizes; axes of one sample.

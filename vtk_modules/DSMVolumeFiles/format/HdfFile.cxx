@@ -6,12 +6,10 @@
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
-#include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfBrickIndex.h"
-#include "DSMVolumeFiles/format/HdfChunks.h"
 #include "DSMVolumeFiles/format/HdfImage.h"
+#include "DSMVolumeFiles/format/HdfLayout.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
@@ -62,7 +60,7 @@ public:
     this->GoesOn = nullptr; // whoever opens the file may be gone later
     // Results kept for one level must not be used for another.
     std::uint64_t stamp = this->Bytes->GetStamp() + static_cast<std::uint64_t>(level);
-    for (const Storage& storage : this->Storages)
+    for (const ChunkStorage& storage : this->Storages)
     {
       stamp += storage.Packed.GetStamp();
     }
@@ -128,9 +126,9 @@ public:
   std::uint64_t GetTableBytes() const override
   {
     std::uint64_t bytes = 0;
-    for (const std::vector<Dataset>& steps : this->Kept)
+    for (const std::vector<HdfDataset>& steps : this->Kept)
     {
-      for (const Dataset& dataset : steps)
+      for (const HdfDataset& dataset : steps)
       {
         bytes += dataset.Chunks ? dataset.Chunks->GetBytes() : 0;
       }
@@ -142,7 +140,7 @@ protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const bricks::Index3& chunk) const override
   {
-    const Dataset& dataset = this->GetDataset(array, step);
+    const HdfDataset& dataset = this->GetDataset(array, step);
     if (dataset.ReadByLibrary)
     {
       return std::nullopt; // nobody else knows
@@ -188,39 +186,9 @@ protected:
   }
 
 private:
-  struct Dataset
+  const HdfDataset& GetDataset(std::size_t array, int step) const
   {
-    HdfHandle Id;
-    bricks::ScalarType Type = bricks::ScalarType::UInt8; ///< as which the library reads it
-    bool ReadByLibrary = false;
-    haddr_t First = HADDR_UNDEF;         ///< of contiguous values
-    std::optional<HdfChunkTable> Chunks; ///< chunks of all times; none where values are contiguous
-    std::size_t ChunkTimes = 1;          ///< in a chunk
-    HdfAxes Shape;
-    std::vector<int>
-      Frames; ///< position of each step along the time axis; empty: each step has its own chunks
-
-    std::size_t GetFrame(int step) const
-    {
-      return this->Shape.Frames == 0
-        ? 0
-        : static_cast<std::size_t>(
-            this->Frames.empty() ? step : this->Frames[static_cast<std::size_t>(step)]);
-    }
-  };
-
-  /// An array with what says where its values are.
-  struct Layout
-  {
-    FileArray Array;
-    Storage Values;
-    Dataset Origin;
-    std::vector<CodecStep> Steps;
-  };
-
-  const Dataset& GetDataset(std::size_t array, int step) const
-  {
-    const std::vector<Dataset>& steps = this->Kept[array];
+    const std::vector<HdfDataset>& steps = this->Kept[array];
     return steps.size() == 1 ? steps.front() : steps[static_cast<std::size_t>(step)];
   }
 
@@ -235,9 +203,9 @@ private:
   /// more.
   void Close()
   {
-    for (std::vector<Dataset>& steps : this->Kept)
+    for (std::vector<HdfDataset>& steps : this->Kept)
     {
-      for (Dataset& dataset : steps)
+      for (HdfDataset& dataset : steps)
       {
         dataset.Id.Reset();
       }
@@ -365,8 +333,13 @@ private:
       if (isVolume && found.Samples == samples)
       {
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
-        std::vector<int> frames = this->FindFrames(parent, offsets, found);
-        this->Add(this->FindLayout(std::move(dataset), link, onCells, found, std::move(frames)));
+        std::optional<HdfLayout> layout =
+          this->FindLayout(std::move(dataset), link, onCells, found);
+        if (layout)
+        {
+          layout->Origin.Frames = this->FindFrames(parent, offsets, found);
+          this->Add(std::move(*layout));
+        }
       }
     }
   }
@@ -473,14 +446,19 @@ private:
     return true;
   }
 
-  void Add(std::optional<Layout> layout)
+  std::optional<HdfLayout> FindLayout(
+    HdfHandle dataset, const std::string& name, bool onCells, const HdfAxes& axes)
   {
-    if (layout)
-    {
-      this->Arrays.push_back(std::move(layout->Array));
-      this->Storages.push_back(std::move(layout->Values));
-      this->Kept.emplace_back().push_back(std::move(layout->Origin));
-    }
+    return HdfLayout::Find({ this->Path, this->File.Get(), this->Root, *this->Bytes, this->Grows,
+                             this->GoesOn, this->Origins, this->Warnings },
+      std::move(dataset), name, onCells, axes);
+  }
+
+  void Add(HdfLayout layout)
+  {
+    this->Arrays.push_back(std::move(layout.Array));
+    this->Storages.push_back(std::move(layout.Values));
+    this->Kept.emplace_back().push_back(std::move(layout.Origin));
   }
 
   /// Adds an array whose steps are datasets of one shape.
@@ -489,218 +467,32 @@ private:
     const auto find = [&](const std::string& dataset)
     {
       return this->FindLayout(
-        OpenHdfDataset(this->File.Get(), dataset), volume.Name, false, volume.Axes, {});
+        OpenHdfDataset(this->File.Get(), dataset), volume.Name, false, volume.Axes);
     };
-    std::optional<Layout> first = find(volume.Datasets.front());
-    std::vector<Dataset> others;
+    std::optional<HdfLayout> first = find(volume.Datasets.front());
+    std::vector<HdfDataset> others;
     for (std::size_t step = 1; first && step < volume.Datasets.size(); ++step)
     {
-      std::optional<Layout> next = find(volume.Datasets[step]);
-      if (!next || next->Values.Packed.GetStamp() != first->Values.Packed.GetStamp())
+      std::optional<HdfLayout> next = find(volume.Datasets[step]);
+      if (!next || !next->HasSameValues(*first))
       {
-        throw FileError(this->Path,
-          "has dataset '" + volume.Datasets[step] +
-            "' with another 'scale_factor' or 'add_offset' than '" + volume.Datasets.front() +
-            "'. Give the path of one of them.");
+        this->Warnings.push_back("has datasets " + Quote(volume.Datasets.front()) + " and " +
+          Quote(volume.Datasets[step]) +
+          " that differ in their type, 'scale_factor', 'add_offset' or missing values. Array " +
+          Quote(volume.Name) + " is not shown. To show it, give one of its datasets.");
+        return;
       }
-      Dataset& dataset = next->Origin;
-      if (!IsAlike(*next, *first))
+      if (!next->IsStoredLike(*first))
       {
-        // The library cuts and converts its values as the first one's are.
-        dataset.ReadByLibrary = true;
-        dataset.Chunks.reset();
-        dataset.Type = first->Origin.Type;
+        next->LeaveToLibrary();
       }
-      others.push_back(std::move(dataset));
+      others.push_back(std::move(next->Origin));
     }
-    this->Add(std::move(first));
-    if (!others.empty())
+    if (first)
     {
+      this->Add(std::move(*first));
       std::move(others.begin(), others.end(), std::back_inserter(this->Kept.back()));
     }
-  }
-
-  /// Returns whether the values of two arrays of one shape can be found in one way.
-  static bool IsAlike(const Layout& a, const Layout& b)
-  {
-    const auto isSameStep = [](const CodecStep& one, const CodecStep& other)
-    {
-      return one.What == other.What && one.With.Width == other.With.Width &&
-        one.With.Numbers == other.With.Numbers;
-    };
-    return a.Array.Type == b.Array.Type && a.Array.Grid.ChunkSamples == b.Array.Grid.ChunkSamples &&
-      a.Values.StoredSamples == b.Values.StoredSamples &&
-      a.Values.HasWholeChunks == b.Values.HasWholeChunks && a.Values.Slices == b.Values.Slices &&
-      a.Values.Fill == b.Values.Fill &&
-      std::equal(a.Steps.begin(), a.Steps.end(), b.Steps.begin(), b.Steps.end(), isSameStep);
-  }
-
-  std::optional<Layout> FindLayout(HdfHandle id, const std::string& name, bool onCells,
-    const HdfAxes& axes, std::vector<int> frames)
-  {
-    FileArray array;
-    array.Name = name;
-    array.OnCells = onCells;
-    array.Components = static_cast<int>(std::max<hsize_t>(1, axes.Components));
-    const std::optional<HdfValues> values = FindHdfValues(id.Get());
-    if (!values)
-    {
-      return std::nullopt;
-    }
-    array.Type = values->Type;
-    array.Grid.Samples = axes.Samples;
-    Storage storage;
-    storage.Packed = this->FindPacking(id.Get(), values->Type, name);
-    CheckSizes(this->Path, array);
-    // The library alone knows the chunks of a file that grows.
-    const bool isElsewhere =
-      this->Origins.Add(this->Path, this->File.Get(), id.Get()) || this->Grows;
-    const bool isOrdered = axes.Order == FastestX;
-    const auto cut = isOrdered ? &CutIntoRows : &CutIntoBoxes;
-    array.Grid = cut(axes.Samples, array.GetSampleBytes());
-    storage.Order = axes.Order;
-    Dataset dataset{ std::move(id), values->Type, !values->IsPlain || isElsewhere, HADDR_UNDEF,
-      std::nullopt, 1, axes, std::move(frames) };
-    storage.Fill = GetHdfFill(dataset.Id.Get(), array.Type, array.Components);
-    const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
-    std::vector<CodecStep> steps;
-    if (values->Swapped)
-    {
-      steps.push_back({ "swap", bricks::GetBytes(array.Type) });
-    }
-    switch (H5Pget_layout(properties.Get()))
-    {
-      case H5D_CONTIGUOUS:
-        dataset.First = dataset.ReadByLibrary
-          ? HADDR_UNDEF
-          : FindHdfValuesPlace(dataset.Id.Get(), *this->Bytes, array, axes.Frames);
-        dataset.ReadByLibrary = dataset.ReadByLibrary || !isOrdered;
-        storage.HasWholeChunks = false;
-        break;
-      case H5D_CHUNKED:
-      {
-        const std::vector<hsize_t> edges = GetHdfChunkEdges(dataset.Id.Get(), this->Path, name);
-        array.Grid.ChunkSamples =
-          axes.GetSpace(edges); // so that the library, too, unpacks each chunk once
-        CheckSizes(this->Path, array);
-        // Also of chunks that the library reads: it does not check how many bytes they have.
-        const bool areFound = !isElsewhere &&
-          this->FindChunks(edges, properties.Get(), array, storage, dataset, values->Swapped);
-        dataset.ReadByLibrary =
-          dataset.ReadByLibrary || !areFound || !FindHdfSteps(properties.Get(), steps);
-        if (dataset.ReadByLibrary)
-        {
-          dataset.Chunks.reset();
-        }
-        break;
-      }
-      case H5D_COMPACT:
-        CheckHdfCompact(dataset.Id.Get(), this->Path, name);
-        dataset.ReadByLibrary = true;
-        break;
-      default:
-        dataset.ReadByLibrary = true;
-    }
-    if (!dataset.ReadByLibrary)
-    {
-      storage.Codec = this->CreateCodec(name, steps);
-    }
-    if (!dataset.ReadByLibrary && storage.Slices == 1)
-    {
-      this->FindHalo(array, storage);
-    }
-    if (!dataset.ReadByLibrary && !dataset.Chunks)
-    {
-      CutContiguous(array, storage);
-    }
-    else if (!dataset.ReadByLibrary)
-    {
-      CutPlainChunks(array, storage);
-    }
-    array.Type = storage.Packed.GetType();
-    array.Valid = storage.Packed.GetValid();
-    return Layout{ std::move(array), std::move(storage), std::move(dataset), std::move(steps) };
-  }
-
-  PackedValues FindPacking(hid_t dataset, bricks::ScalarType stored, const std::string& name)
-  {
-    PackedValues packed(stored);
-    packed.TakeAttributes([&](const char* attribute) { return ReadHdfNumbers(dataset, attribute); },
-      ReadHdfText(dataset, "_Unsigned") == "true", name, this->Warnings);
-    return packed;
-  }
-
-  ChunkCodec CreateCodec(const std::string& name, std::vector<CodecStep> steps) const
-  {
-    try
-    {
-      return ChunkCodec(std::move(steps));
-    }
-    catch (const dsm::Error& error)
-    {
-      throw FileError({ this->Path, name, {} }, error);
-    }
-  }
-
-  /// As one chunk is, but for small ones.
-  static void CutContiguous(FileArray& array, Storage& storage)
-  {
-    const bricks::Index3 rows = std::exchange(array.Grid.ChunkSamples, array.Grid.Samples);
-    CutPlainChunks(array, storage);
-    if (storage.StoredSamples == bricks::Index3(0))
-    {
-      array.Grid.ChunkSamples = rows;
-    }
-  }
-
-  /// Finds the halos of a brick file's chunks.
-  void FindHalo(const FileArray& array, Storage& storage) const
-  {
-    int halo = 0;
-    const HdfHandle index = OpenHdfBrickIndex(this->Root, array);
-    if (!index.IsOpen() || !ReadHdfAttribute(index.Get(), HdfHalo, H5T_NATIVE_INT, &halo, 1) ||
-      halo != 1)
-    {
-      return;
-    }
-    storage.HasHalo = storage.Codec.KeepsHalo();
-    if (!storage.HasHalo && H5Lexists(index.Get(), HdfHaloRecords, H5P_DEFAULT) > 0)
-    {
-      storage.HasHalo = true;
-      storage.HaloRecordBytes =
-        HaloRecord::GetBytes(array.Grid.CountMostOfHalo() * array.GetSampleBytes());
-    }
-  }
-
-  /// False when the chunks do not have all components, or are not where the library says, or as the filters say.
-  bool FindChunks(const std::vector<hsize_t>& edges, hid_t properties, const FileArray& array,
-    Storage& storage, Dataset& dataset, bool swapped) const
-  {
-    const HdfHandle creation(H5Fget_create_plist(this->File.Get()), &H5Pclose);
-    hsize_t before = 0;
-    unsigned partial = 0;
-    if (H5Pget_userblock(creation.Get(), &before) < 0 || before != 0 ||
-      H5Pget_chunk_opts(properties, &partial) < 0 || partial != 0)
-    {
-      return false;
-    }
-    const HdfAxes& axes = dataset.Shape;
-    // A chunk may have several times.
-    const hsize_t slices = axes.CountSlices(edges);
-    CheckSizes(this->Path, array, slices);
-    storage.Slices = static_cast<std::size_t>(slices);
-    dataset.ChunkTimes = axes.Time ? static_cast<std::size_t>(edges[*axes.Time]) : 1;
-    dataset.Chunks = FindHdfChunks(dataset.Id.Get(), *this->Bytes, array.Name, edges, this->GoesOn);
-    const bool areWhole = axes.Components == 0 || edges.back() == axes.Components;
-    if (!areWhole || dataset.ChunkTimes != slices)
-    {
-      dataset.Chunks.reset();
-    }
-    if (dataset.Chunks && swapped)
-    {
-      dataset.Chunks->AddFilterInFront();
-    }
-    return dataset.Chunks.has_value();
   }
 
   void ReadByLibrary(
@@ -713,7 +505,7 @@ private:
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
     const FileArray& array = this->Arrays[number];
-    const Dataset& kept = this->GetDataset(number, step);
+    const HdfDataset& kept = this->GetDataset(number, step);
     const hid_t dataset = kept.Id.Get();
     const bool isRead = ReadHdfBox(
       dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
@@ -737,10 +529,10 @@ private:
   HdfOrigins Origins;
   bool Grows; ///< another program appends to it
   HdfHandle File;
-  std::optional<HdfHandle> Coarser;       ///< the group of a coarser level
-  hid_t Root = H5I_INVALID_HID;           ///< of the level: that group, or the file
-  std::vector<std::vector<Dataset>> Kept; ///< of each array: one for all steps, or one for each
-  std::string Missing;                    ///< what there must be, where there is no array
+  std::optional<HdfHandle> Coarser;          ///< the group of a coarser level
+  hid_t Root = H5I_INVALID_HID;              ///< of the level: that group, or the file
+  std::vector<std::vector<HdfDataset>> Kept; ///< of each array: one for all steps, or one for each
+  std::string Missing;                       ///< what there must be, where there is no array
 };
 
 } // namespace

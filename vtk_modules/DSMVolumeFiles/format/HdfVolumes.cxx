@@ -76,6 +76,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     std::remove_if(found.begin(), found.end(),
       [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
     found.end());
+  volumes.Missing = DescribeMissing(file, wanted, others);
   volumes.Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
   if (wanted.empty())
   {
@@ -83,9 +84,6 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
   }
   std::sort(found.begin(), found.end(),
     [](const HdfVolume& a, const HdfVolume& b) { return a.Name < b.Name; });
-  volumes.Missing = found.empty() && !volumes.Warnings.empty()
-    ? "mesh that all iterations have in one form. Give the path of a dataset."
-    : DescribeMissing(file, wanted, others);
   return volumes;
 }
 

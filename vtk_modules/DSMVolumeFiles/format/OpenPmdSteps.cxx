@@ -142,6 +142,7 @@ void JoinOpenPmdSteps(hid_t file, HdfVolumes& volumes)
   {
     volumes.Steps = static_cast<int>(iterations.size());
     volumes.Times = ReadTimes(file, iterations);
+    volumes.Missing = "mesh that all iterations have in one form. Give one of its datasets.";
   }
 }
 

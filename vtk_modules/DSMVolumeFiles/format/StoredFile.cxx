@@ -15,48 +15,11 @@
 namespace vol
 {
 
-namespace
-{
-
-/// Chunks are cut if those that a box of so many samples lies in take more than this together.
-constexpr std::int64_t BoxSamples = 33;
-constexpr std::uint64_t MostTogether = std::uint64_t(16) << 20;
-
-/// Chunks with at least so many planes, or with longer rows, are cut into boxes.
-constexpr std::int64_t LeastPlanes = 16;
-constexpr std::uint64_t LongestRow = std::uint64_t(1) << 20;
-
-} // namespace
-
 ChunkGrid StoredFile::GetStoredGrid(std::size_t array) const
 {
   const ChunkGrid& grid = this->Arrays[array].Grid;
   const bricks::Index3& stored = this->Storages[array].StoredSamples;
   return stored == bricks::Index3(0) ? grid : ChunkGrid{ grid.Samples, stored };
-}
-
-void StoredFile::CutPlainChunks(FileArray& array, Storage& storage)
-{
-  ChunkGrid& grid = array.Grid;
-  if (!storage.Codec.KeepsPlaces() || storage.Slices != 1 || storage.Order != FastestX ||
-    storage.HasHalo || grid.CountBytesOfChunks(BoxSamples, array.GetSampleBytes()) <= MostTogether)
-  {
-    return;
-  }
-  const bricks::Index3 size = glm::min(grid.ChunkSamples, grid.Samples);
-  const bool isShort = static_cast<std::uint64_t>(size.x) * array.GetSampleBytes() <= LongestRow;
-  const auto cut = size.z < LeastPlanes && isShort ? &CutIntoRows : &CutIntoBoxes;
-  bricks::Index3 part = cut(size, array.GetSampleBytes()).ChunkSamples;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    // No part lies in two chunks of the file.
-    while (grid.GetCounts()[axis] > 1 && grid.ChunkSamples[axis] % part[axis] != 0)
-    {
-      --part[axis];
-    }
-  }
-  storage.StoredSamples = grid.ChunkSamples;
-  grid.ChunkSamples = part;
 }
 
 bricks::Index3 StoredFile::FindStored(std::size_t array, const bricks::Index3& chunk) const
@@ -110,7 +73,7 @@ void StoredFile::ReadStored(
   std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
   const FileArray& what = this->Arrays[array];
-  const Storage& storage = this->Storages[array];
+  const ChunkStorage& storage = this->Storages[array];
   const std::size_t sampleBytes = this->GetStoredBytes(array);
   const bricks::Box box = what.Grid.GetBox(chunk);
   const auto count = static_cast<std::size_t>(box.GetCount());
@@ -130,7 +93,7 @@ void StoredFile::ReadStored(
   {
     // Unwanted parts of a large uncompressed chunk are not read.
     const bool inRows =
-      storage.StoredSamples != bricks::Index3(0) || (!isAll && allBytes > MostTogether);
+      storage.StoredSamples != bricks::Index3(0) || (!isAll && allBytes > MostChunkBytesTogether);
     const auto rows =
       inRows ? this->FindPieces(array, *place, whole, box) : std::vector<PositionedFile::Piece>{};
     if (!rows.empty())
@@ -186,7 +149,7 @@ void StoredFile::FillWith(const std::vector<std::byte>& fill, std::byte* out, st
 
 void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t bytes) const
 {
-  const Storage& storage = this->Storages[array];
+  const ChunkStorage& storage = this->Storages[array];
   const FileArray& what = this->Arrays[array];
   // Only the decoder knows whether the chunk has a halo.
   const std::uint64_t most = storage.Codec.CountMostStored(bytes,
@@ -215,7 +178,7 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
 std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   std::size_t array, const Place& place, const bricks::Index3& whole, const bricks::Box& part) const
 {
-  const Storage& storage = this->Storages[array];
+  const ChunkStorage& storage = this->Storages[array];
   const std::size_t sampleBytes = this->GetStoredBytes(array);
   const bricks::Box stored = this->GetStoredBox(array, whole);
   const bricks::Index3 size = stored.GetSize();
@@ -242,7 +205,7 @@ std::vector<PositionedFile::Piece> StoredFile::FindPieces(
   return pieces;
 }
 
-void StoredFile::ReadPieces(const Storage& storage, const Place& place,
+void StoredFile::ReadPieces(const ChunkStorage& storage, const Place& place,
   const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes)
 {
   if (storage.Codec.IsPlain())
@@ -287,7 +250,7 @@ bool StoredFile::ReadWithHalo(
   std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const
 {
   const FileArray& what = this->Arrays[array];
-  const Storage& storage = this->Storages[array];
+  const ChunkStorage& storage = this->Storages[array];
   const std::optional<Place> place =
     storage.HasHalo ? this->FindChunk(array, step, chunk) : std::nullopt;
   if (!place)

@@ -5,9 +5,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
-#include "DSMVolumeFiles/base/SpaceOrder.h"
-#include "DSMVolumeFiles/codec/ChunkCodec.h"
-#include "DSMVolumeFiles/format/PackedValues.h"
+#include "DSMVolumeFiles/format/ChunkStorage.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <memory>
@@ -41,28 +39,7 @@ protected:
     std::uint64_t Offset = 0;
     std::size_t Bytes = 0;
     unsigned SkippedSteps = 0; ///< bits of the codec steps that were skipped
-    std::size_t Slice = 0;     ///< which of Storage::Slices
-  };
-
-  /// How the chunks of an array are kept.
-  struct Storage
-  {
-    ChunkCodec Codec;
-    PackedValues Packed;
-    /// Numbers of a chunk that is not stored: one sample, or one component if all are equal.
-    std::vector<std::byte> Fill;
-    /// Samples along each axis of a chunk in the file, where it is shown as several (CutPlainChunks); else 0.
-    bricks::Index3 StoredSamples{ 0 };
-    /// Chunks at the volume's ends are as large as all others; else they end with it.
-    bool HasWholeChunks = true;
-    SpaceOrder Order = FastestX; ///< of the samples of a chunk
-    /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
-    /// more axes than three.
-    std::size_t Slices = 1;
-    /// Chunks, which are whole ones then, and of one slice, probably have a halo.
-    bool HasHalo = false;
-    /// Size of the HaloRecord behind each chunk, in bytes; 0: the halo is in the chunk.
-    std::size_t HaloRecordBytes = 0;
+    std::size_t Slice = 0;     ///< which of ChunkStorage::Slices
   };
 
   /// None: all samples of the chunk have the fill value. `chunk` is one of GetStoredGrid.
@@ -78,12 +55,7 @@ protected:
   /// How the array is cut in the file.
   ChunkGrid GetStoredGrid(std::size_t array) const;
 
-  /// Divides each chunk into several of neighboring rows, if the chunks that a brick lies in are large
-  /// together, as slices are, and if rows of a chunk can be read separately. Then readers hold only the rows
-  /// that they need.
-  static void CutPlainChunks(FileArray& array, Storage& storage);
-
-  std::vector<Storage> Storages; ///< one for each array
+  std::vector<ChunkStorage> Storages; ///< one for each array
 
   /// Returns the bytes of a sample's numbers in the file.
   std::size_t GetStoredBytes(std::size_t array) const;
@@ -107,7 +79,7 @@ private:
   std::vector<PositionedFile::Piece> FindPieces(std::size_t array, const Place& place,
     const bricks::Index3& whole, const bricks::Box& part) const;
   /// Reads pieces that have so many bytes in total.
-  static void ReadPieces(const Storage& storage, const Place& place,
+  static void ReadPieces(const ChunkStorage& storage, const Place& place,
     const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes);
 };
 

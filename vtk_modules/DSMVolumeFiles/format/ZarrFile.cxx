@@ -512,7 +512,7 @@ private:
 
   /// A chunk that cannot be read in parts is read whole.
   static void CheckChunkBytes(
-    const std::string& folder, const FileArray& array, const Storage& storage)
+    const std::string& folder, const FileArray& array, const ChunkStorage& storage)
   {
     if (storage.StoredSamples != bricks::Index3(0) ||
       (storage.Codec.KeepsPlaces() && storage.Order == FastestX))
@@ -579,7 +579,7 @@ private:
       array.Type = packed.GetStored();
       array.Components = static_cast<int>(axes.GetComponents(data->Shape));
       array.Grid = { this->Geometry.Points, axes.GetSpace(data->ChunkShape) };
-      Storage storage;
+      ChunkStorage storage;
       storage.Codec = data->Codec;
       storage.Packed = packed;
       storage.Fill = data->Fill;
