@@ -52,7 +52,7 @@ void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute
   AxisNotes& notes, std::size_t first);
 
 /// Adds a sentence to `warnings` for each of CF's attributes of places that are not along the axes of an array: "coordinates" of
-/// two and more axes, and "grid_mapping" of a projection. `getText(attribute)`: of the array; empty: none. `countAxes(name)`:
+/// two and more axes, and "grid_mapping" of a projection. `getText(attribute)`: of the array, short; empty: none. `countAxes(name)`:
 /// of an array beside it; 0: there is none.
 void WarnOfOtherPlaces(const std::function<std::string(const char* attribute)>& getText,
   const std::function<std::size_t(const std::string& name)>& countAxes,

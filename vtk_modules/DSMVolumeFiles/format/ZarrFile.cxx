@@ -12,6 +12,7 @@
 #include "DSMVolumeFiles/format/ZarrJson.h"
 #include "DSMVolumeFiles/format/ZarrListing.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
+#include "DSMVolumeFiles/format/ZarrNotes.h"
 #include "DSMVolumeFiles/format/ZarrParts.h"
 #include "DSMVolumeFiles/format/ZarrVector.h"
 
@@ -329,91 +330,24 @@ private:
     }
   }
 
-  static AxisNotes NameAxes(const std::string& folder, const ZarrMetadata& data)
-  {
-    AxisNotes notes;
-    const std::size_t count = data.Shape.size();
-    const bool areNamed = data.Axes.is_array() && data.Axes.size() == count;
-    for (std::size_t axis = 0; axis < count; ++axis)
-    {
-      AxisNote note;
-      note.Name = areNamed && data.Axes[axis].is_string() ? data.Axes[axis].get<std::string>() : "";
-      CheckLimit(folder, "bytes of an axis's name", note.Name.size(), FileLimits::NameBytes);
-      notes.push_back(std::move(note));
-    }
-    return notes;
-  }
-
-  /// What the array in a folder, and those beside it that have the names of its axes, say of its axes.
-  static AxisNotes ReadNotes(
-    const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
-  {
-    AxisNotes notes = NameAxes(folder, data);
-    const std::size_t count = data.Shape.size();
-    TakeVoxelSize([&](const char* name)
-      { return ZarrJson::ToNumbers(ZarrJson::Find(data.Attributes, name)); },
-      notes, static_cast<std::size_t>(axes.Leading));
-    const std::string beside = std::filesystem::path(folder).parent_path().string();
-    for (std::size_t axis = 0; axis < count; ++axis)
-    {
-      AxisNote& note = notes[axis];
-      const std::filesystem::path name(note.Name);
-      if (!note.Name.empty() && name == name.filename() && note.Name != ".." &&
-        FindPathKind(beside + "/" + note.Name) == PathKind::Directory)
-      {
-        const std::string coordinates = beside + "/" + note.Name;
-        auto numbers = ReadZarrVector(coordinates, static_cast<std::uint64_t>(data.Shape[axis]));
-        if (numbers.size() == static_cast<std::size_t>(data.Shape[axis]))
-        {
-          note.Coordinates = std::move(numbers);
-          note.Unit = ZarrJson::GetText(coordinates, ReadZarrAttributes(coordinates), "units");
-        }
-      }
-    }
-    return notes;
-  }
-
-  void WarnOfPlaces(const std::string& folder, const ZarrMetadata& data)
-  {
-    const std::string beside = std::filesystem::path(folder).parent_path().string();
-    const auto getText = [&](const char* name)
-    {
-      const Json& found = ZarrJson::Find(data.Attributes, name);
-      return found.is_string() ? found.get<std::string>() : std::string();
-    };
-    const auto countAxes = [&](const std::string& name) -> std::size_t
-    {
-      try
-      {
-        const auto other = ReadZarrMetadata(beside + "/" + name);
-        return other ? other->Shape.size() : 0;
-      }
-      catch (const dsm::Error&)
-      {
-        return 0; // nor can it place anything
-      }
-    };
-    WarnOfOtherPlaces(getText, countAxes, this->Warnings);
-  }
-
   /// The path is an array, or a group of arrays.
   void OpenArrays()
   {
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
       const auto data = Read(folder);
-      const ZarrAxes axes = ZarrAxes::Find(folder, NameAxes(folder, *data), data->Shape.size());
+      const ZarrAxes axes = ZarrAxes::Find(folder, NameZarrAxes(folder, *data), data->Shape.size());
       const bool isFirst = this->Arrays.empty();
       if (isFirst || (axes.Time >= 0 && this->Times.empty()))
       {
-        const AxisNotes notes = ReadNotes(folder, *data, axes);
+        const AxisNotes notes = ReadZarrNotes(folder, *data, axes);
         if (isFirst)
         {
           this->PlaceBy(notes, axes, data->Shape);
         }
         this->TimeBy(notes, axes, data->Shape);
       }
-      this->WarnOfPlaces(folder, *data);
+      WarnOfZarrPlaces(folder, *data, this->Warnings);
       this->Add(folder, data, axes,
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
@@ -437,7 +371,8 @@ private:
         {
           return std::nullopt;
         }
-        const ZarrAxes axes = ZarrAxes::Find(folder, NameAxes(folder, *data), data->Shape.size());
+        const ZarrAxes axes =
+          ZarrAxes::Find(folder, NameZarrAxes(folder, *data), data->Shape.size());
         return VolumeShape{ axes.GetSpace(data->Shape),
           axes.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(axes.Time)] };
       }
