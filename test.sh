@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds, and runs every test. The last line counts them.
 # usage: ./test.sh [--quick] [ctest arguments], such as -R Mpi
-#   --quick  style, unit tests, scenes, MPI, and ParaView's scripts on one rank; at most 4 minutes on two cores
+#   --quick  style, unit tests, scenes, MPI, and ParaView's scripts on one rank; about 6 minutes on two cores
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/scripts/common.sh"
 
