@@ -21,7 +21,7 @@ display = simple.Show(volume, view)
 display.SetRepresentationType("DSM Slices")
 simple.Render(view)
 colors = simple.GetColorTransferFunction("f")
-colors.ApplyPreset("Viridis (matplotlib)")
+colors.ApplyPreset("Cool to Warm (Extended)")
 colors.RescaleTransferFunction(0.0, 1.3)
 display.DSMSliceXIndex, display.DSMSliceYIndex, display.DSMSliceZIndex = 64, 40, 30
 simple.ResetCamera(view)

@@ -113,10 +113,9 @@ private:
     const HdfHandle creation(H5Pcreate(H5P_FILE_CREATE), &H5Pclose);
     const HdfHandle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
     H5Pset_userblock(creation.Get(), userBlock);
-    if (isLatest)
-    {
-      H5Pset_libver_bounds(access.Get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-    }
+    // Metadata of the latest formats have checksums, so that the library refuses bytes that are replaced in them.
+    const H5F_libver_t format = isLatest ? H5F_LIBVER_LATEST : H5F_LIBVER_EARLIEST;
+    H5Pset_libver_bounds(access.Get(), format, H5F_LIBVER_LATEST);
     return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.Get(), access.Get());
   }
 
@@ -206,6 +205,29 @@ TEST(HostileHdf, ChunksOfOtherAxesAreRefused)
     }
     ExpectRefusal(
       path, { "'a'", hasMore ? "3 axes, but its chunks have 4" : "but its chunks have 3" });
+  }
+}
+
+TEST(HostileHdf, DamagedObjectsAreTold)
+{
+  const fs::path path = MakeFolder("damaged") / "damaged.h5";
+  for (const bool isAlone : { true, false })
+  {
+    Writer file(path, 0, true);
+    file.Add("b", { 5, 6, 7 }, {});
+    if (!isAlone)
+    {
+      file.Add("a", { 4, 4, 4 }, {});
+    }
+    file.Replace(Bytes(LongWords{ 5, 6, 7 }), Bytes(LongWords{ 5, 6, 8 }));
+    if (isAlone)
+    {
+      ExpectRefusal(path, { "no numeric dataset", "damaged" });
+      continue;
+    }
+    const auto opened = vol::OpenVolumeFile(path.string());
+    ASSERT_EQ(opened->GetWarnings().size(), 1u);
+    EXPECT_NE(opened->GetWarnings().front().find("damaged"), std::string::npos);
   }
 }
 

@@ -85,10 +85,15 @@ std::mutex& GetHdfLock()
   return lock;
 }
 
-std::vector<std::string> FindHdfDatasets(hid_t file)
+std::vector<std::string> FindHdfDatasets(hid_t file, bool* isDamaged)
 {
   Visit visit;
-  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &visit, H5O_INFO_BASIC);
+  const herr_t ended =
+    H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &visit, H5O_INFO_BASIC);
+  if (isDamaged)
+  {
+    *isDamaged = ended < 0;
+  }
   visit.Objects = 0;
   H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &visit);
   return std::move(visit.Names);

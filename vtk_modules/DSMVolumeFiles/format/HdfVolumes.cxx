@@ -18,7 +18,7 @@ namespace
 
 /// `others`: datasets of numbers that are no volumes, with their shapes.
 std::string DescribeMissing(
-  hid_t file, const std::string& wanted, const std::vector<std::string>& others)
+  hid_t file, const std::string& wanted, const std::vector<std::string>& others, bool isDamaged)
 {
   const std::string shapes = others.empty()
     ? std::string()
@@ -28,7 +28,8 @@ std::string DescribeMissing(
       (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : ".");
   if (wanted.empty())
   {
-    return "numeric dataset with three axes." + shapes;
+    return std::string("numeric dataset with three axes") +
+      (isDamaged ? " that can be read: an object in it is damaged." : ".") + shapes;
   }
   return OpenHdfDataset(file, wanted).IsOpen()
     ? "volume in its dataset '" + wanted + "'." + shapes
@@ -39,9 +40,15 @@ std::string DescribeMissing(
 
 HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::string& wanted)
 {
+  bool isDamaged = false;
   const std::vector<std::string> names =
-    wanted.empty() ? FindHdfDatasets(file) : std::vector<std::string>{ wanted };
+    wanted.empty() ? FindHdfDatasets(file, &isDamaged) : std::vector<std::string>{ wanted };
   HdfVolumes volumes;
+  if (isDamaged)
+  {
+    volumes.Warnings.push_back("has an object that cannot be read: the file is damaged. Datasets "
+                               "that come after it are not shown.");
+  }
   std::vector<std::string> others;
   for (const std::string& name : names)
   {
@@ -76,7 +83,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     std::remove_if(found.begin(), found.end(),
       [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
     found.end());
-  volumes.Missing = DescribeMissing(file, wanted, others);
+  volumes.Missing = DescribeMissing(file, wanted, others, isDamaged);
   volumes.Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
   if (wanted.empty())
   {
