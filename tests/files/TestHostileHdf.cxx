@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -134,6 +135,17 @@ std::string Bytes(const std::vector<T>& numbers)
 using Words = std::vector<std::uint32_t>;
 using LongWords = std::vector<std::uint64_t>;
 
+/// Of a dataset 'a' that HDF5 2 does not even open.
+void ExpectRefusalOfDataset(const fs::path& path, std::initializer_list<const char*> words)
+{
+#if H5_VERSION_GE(2, 0, 0)
+  EXPECT_NE(words.size(), 0u);
+  ExpectRefusal(path, { "'a'", "cannot open" });
+#else
+  ExpectRefusal(path, words);
+#endif
+}
+
 TEST(HostileHdf, AxesWithoutABoundAreRefused)
 {
   const fs::path folder = MakeFolder("axes");
@@ -143,13 +155,13 @@ TEST(HostileHdf, AxesWithoutABoundAreRefused)
     file.Add("a", { 1000, 1024, 1024, 1024 }, { 1, 1, 1, 1 });
     file.Replace(Bytes(LongWords{ 1000, 1024, 1024, 1024 }), Bytes(LongWords{ huge }));
   }
-  ExpectRefusal(folder / "time.h5", { "'a'", "17179869184 time steps", "at most" });
+  ExpectRefusalOfDataset(folder / "time.h5", { "'a'", "17179869184 time steps", "at most" });
   {
     Writer file(folder / "along.h5");
     file.Add("a", { 1000, 1024, 1024 }, { 1, 1, 1 });
     file.Replace(Bytes(LongWords{ 1000, 1024, 1024 }), Bytes(LongWords{ huge }));
   }
-  ExpectRefusal(folder / "along.h5", { "'a'", "17179869184 samples along z" });
+  ExpectRefusalOfDataset(folder / "along.h5", { "'a'", "17179869184 samples along z" });
   {
     Writer file(folder / "components.vtkhdf");
     file.AddImage({ 0, 1, 0, 0, 0, 0 });
@@ -181,7 +193,7 @@ TEST(HostileHdf, ChunksThatAreNotThereTakeNoMemory)
     const std::uint64_t most = INT_MAX;
     file.Replace(Bytes(LongWords{ 1000, 1024, 1024 }), Bytes(LongWords{ most, most, most }));
   }
-  ExpectRefusal(folder / "wrap.h5", { "samples" });
+  ExpectRefusalOfDataset(folder / "wrap.h5", { "samples" });
 }
 
 TEST(HostileHdf, ChunksOfOtherAxesAreRefused)
@@ -203,7 +215,7 @@ TEST(HostileHdf, ChunksOfOtherAxesAreRefused)
       // The layout: version, that it is of chunks, and the number of their axes, one more for the bytes.
       file.Replace(std::string{ 3, 2, 5 }, std::string{ 3, 2, 4 });
     }
-    ExpectRefusal(
+    ExpectRefusalOfDataset(
       path, { "'a'", hasMore ? "3 axes, but its chunks have 4" : "but its chunks have 3" });
   }
 }

@@ -85,14 +85,14 @@ std::mutex& GetHdfLock()
   return lock;
 }
 
-std::vector<std::string> FindHdfDatasets(hid_t file, bool* isDamaged)
+std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll)
 {
   Visit visit;
   const herr_t ended =
     H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, &NoteObject, &visit, H5O_INFO_BASIC);
-  if (isDamaged)
+  if (areAll)
   {
-    *isDamaged = ended < 0;
+    *areAll = ended >= 0;
   }
   visit.Objects = 0;
   H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &visit);

@@ -38,9 +38,9 @@ hid_t GetHdfType(bricks::ScalarType type);
 /// (1.10) does not check this, and converts with memory outside of the number. Under the lock.
 bool IsHdfNumber(hid_t type);
 
-/// The names of what may be datasets, in all groups of a file, and behind external links. `isDamaged`: set to whether an object
-/// cannot be read, so that others may not be found. Under the lock.
-std::vector<std::string> FindHdfDatasets(hid_t file, bool* isDamaged = nullptr);
+/// The names of what may be datasets, in all groups of a file, and behind external links. `areAll`: set to false where an
+/// object cannot be read, so that others may not be found. Under the lock.
+std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll = nullptr);
 /// The first of some names, as the end of a sentence.
 std::string ListHdfNames(const std::vector<std::string>& names);
 

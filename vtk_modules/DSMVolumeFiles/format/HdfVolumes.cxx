@@ -16,44 +16,64 @@ namespace vol
 namespace
 {
 
-/// `others`: datasets of numbers that are no volumes, with their shapes.
-std::string DescribeMissing(
-  hid_t file, const std::string& wanted, const std::vector<std::string>& others, bool isDamaged)
+/// Datasets that make no volume, for messages.
+struct OtherDatasets
 {
-  const std::string shapes = others.empty()
-    ? std::string()
-    : " A volume has numbers along three axes (z, y, x). It may have a first axis of time steps, "
-      "others of length 1, and a last axis of components. Datasets of numbers: " +
-      others.front() +
-      (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : ".");
-  if (wanted.empty())
+  std::vector<std::string> OfNumbers; ///< with their shapes
+  std::vector<std::string> Closed;    ///< names of those that cannot be opened
+  bool AreAll = true; ///< else an object cannot be read, and those after it are not known
+
+  /// What is wrong with the file; empty: nothing.
+  std::string DescribeDamage() const
   {
-    return std::string("numeric dataset with three axes") +
-      (isDamaged ? " that can be read: an object in it is damaged." : ".") + shapes;
+    const std::string closed = this->Closed.empty()
+      ? std::string()
+      : "datasets that HDF5 cannot open, which are damaged or in files that do not exist: " +
+        ListHdfNames(this->Closed);
+    return this->AreAll ? closed
+                        : "an object that cannot be read, so that the file is damaged. Datasets "
+                          "after it are not shown.";
   }
-  return OpenHdfDataset(file, wanted).IsOpen()
-    ? "volume in its dataset '" + wanted + "'." + shapes
-    : "dataset '" + wanted + "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(file));
-}
+
+  /// As HdfVolumes::Missing.
+  std::string DescribeMissing(hid_t file, const std::string& wanted) const
+  {
+    const auto& others = this->OfNumbers;
+    const std::string damage = this->DescribeDamage();
+    const std::string shapes = (damage.empty() ? std::string() : " It has " + damage) +
+      (others.empty()
+          ? std::string()
+          : " A volume has numbers along three axes (z, y, x). It may have a first axis of time "
+            "steps, others of length 1, and a last axis of components. Datasets of numbers: " +
+            others.front() +
+            (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : "."));
+    if (wanted.empty())
+    {
+      return "numeric dataset with three axes." + shapes;
+    }
+    return OpenHdfDataset(file, wanted).IsOpen()
+      ? "volume in its dataset '" + wanted + "'." + shapes
+      : "dataset '" + wanted + "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(file));
+  }
+};
 
 } // namespace
 
 HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::string& wanted)
 {
-  bool isDamaged = false;
+  OtherDatasets others;
   const std::vector<std::string> names =
-    wanted.empty() ? FindHdfDatasets(file, &isDamaged) : std::vector<std::string>{ wanted };
+    wanted.empty() ? FindHdfDatasets(file, &others.AreAll) : std::vector<std::string>{ wanted };
   HdfVolumes volumes;
-  if (isDamaged)
-  {
-    volumes.Warnings.push_back("has an object that cannot be read: the file is damaged. Datasets "
-                               "that come after it are not shown.");
-  }
-  std::vector<std::string> others;
   for (const std::string& name : names)
   {
     const HdfHandle dataset = OpenHdfDataset(file, name);
-    if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
+    if (!dataset.IsOpen())
+    {
+      others.Closed.push_back(name);
+      continue;
+    }
+    if (!FindHdfValues(dataset.Get()))
     {
       continue;
     }
@@ -75,7 +95,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     }
     else
     {
-      others.push_back("'" + name + "' (" + DescribeHdfShape(shape) + ")");
+      others.OfNumbers.push_back("'" + name + "' (" + DescribeHdfShape(shape) + ")");
     }
   }
   auto& found = volumes.Found;
@@ -83,7 +103,12 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     std::remove_if(found.begin(), found.end(),
       [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
     found.end());
-  volumes.Missing = DescribeMissing(file, wanted, others, isDamaged);
+  volumes.Missing = others.DescribeMissing(file, wanted);
+  const std::string damage = others.DescribeDamage();
+  if (!damage.empty())
+  {
+    volumes.Warnings.push_back("has " + damage);
+  }
   volumes.Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
   if (wanted.empty())
   {
