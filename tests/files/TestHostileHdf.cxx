@@ -135,7 +135,7 @@ std::string Bytes(const std::vector<T>& numbers)
 using Words = std::vector<std::uint32_t>;
 using LongWords = std::vector<std::uint64_t>;
 
-/// Of a dataset 'a' that HDF5 2 does not even open.
+/// Expects that opening the file fails. HDF5 2 refuses its dataset 'a' by itself, with another message.
 void ExpectRefusalOfDataset(const fs::path& path, std::initializer_list<const char*> words)
 {
 #if H5_VERSION_GE(2, 0, 0)

@@ -83,7 +83,7 @@ memory = [
     for line in text.splitlines()
     if line.startswith("memory")
 ]
-# Of several steps: the allocator keeps more on one step than on the next.
+# Medians of several steps are compared, because the memory that the allocator keeps varies from step to step.
 NEAR = 6
 for rank in range(2):
     before = statistics.median(step[rank] for step in memory[WARM_UP - NEAR : WARM_UP])

@@ -124,6 +124,7 @@ for name in ("external", "changed"):  # where bare bytes are, counts from the fo
         file.create_dataset("f", SIZE[::-1], "<f4", external=bare)
 with h5py.File(path("origins/link.h5"), "w") as file:
     file["f"] = h5py.ExternalLink("d.bin", "/f")
+    file["group"] = h5py.ExternalLink("d.bin", "/")
 for name in ("virtual", "external", "link"):
     note(f"origins/{name}.h5", [("f", "float32")])
 # As many components as nobody would call a volume's, were it not VTK's.

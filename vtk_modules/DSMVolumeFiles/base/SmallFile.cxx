@@ -66,6 +66,11 @@ std::string ReadWhole(const std::string& path, std::size_t most)
   return ReadText(file, static_cast<std::size_t>(std::min<std::uint64_t>(most, file.GetBytes())));
 }
 
+bool IsPlainName(const std::string& name)
+{
+  return !name.empty() && name != ".." && name.find('/') == std::string::npos;
+}
+
 std::string Quote(const std::string& text)
 {
   constexpr std::size_t most = 100;

@@ -28,6 +28,9 @@ std::string ReadBeginning(const std::string& path, std::size_t most);
 /// Returns all of a file. Throws likewise, also when it has more than `most` bytes.
 std::string ReadWhole(const std::string& path, std::size_t most);
 
+/// Returns whether a name from a file leads nowhere else when it is put behind a folder.
+bool IsPlainName(const std::string& name);
+
 /// Text of a file in quotation marks, for messages: shortened, and without control characters.
 std::string Quote(const std::string& text);
 

@@ -271,8 +271,7 @@ void WarnOfOtherPlaces(const std::function<std::string(const char* attribute)>& 
   std::string curved;
   for (std::string word; words >> word;)
   {
-    // Names come from the file: none leads elsewhere.
-    if (word.find('/') == std::string::npos && word != ".." && countAxes(word) > 1)
+    if (IsPlainName(word) && countAxes(word) > 1)
     {
       curved += (curved.empty() ? "'" : ", '") + word + "'";
     }

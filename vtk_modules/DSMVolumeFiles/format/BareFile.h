@@ -31,7 +31,7 @@ struct BareValues
   /// Smallest valid offset: the end of the header, if the file itself has one.
   std::int64_t Least = 0;
   StreamEncoding Encoding = StreamEncoding::Plain;
-  /// Of each file, where it is compressed: unpacked bytes before its values, or -1 (CompressedValues::Skip).
+  /// The number of unpacked bytes before the values of each compressed file, or -1 (CompressedValues::Skip).
   std::int64_t Skip = 0;
   /// Compressed bytes in each file; 0: all that follow.
   std::int64_t PackedBytes = 0;

@@ -410,7 +410,7 @@ private:
     }
   }
 
-  /// By the first of the datasets, whose place is all datasets'. Returns whether it is this one's.
+  /// Takes place and times from the first volume. Returns whether this one lies at the same place.
   bool LocateBy(const HdfVolume& volume)
   {
     this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
@@ -532,7 +532,7 @@ private:
   std::optional<HdfHandle> Coarser;          ///< the group of a coarser level
   hid_t Root = H5I_INVALID_HID;              ///< of the level: that group, or the file
   std::vector<std::vector<HdfDataset>> Kept; ///< of each array: one for all steps, or one for each
-  std::string Missing;                       ///< what there must be, where there is no array
+  std::string Missing;                       ///< what a file without arrays lacks
 };
 
 } // namespace

@@ -24,6 +24,13 @@ std::string GetPath(hid_t object)
   return GetHdfText([=](char* to, std::size_t size) { return H5Iget_name(object, to, size); });
 }
 
+/// Returns the path of the group that a dataset is in, with a slash behind it.
+std::string GetGroupPath(hid_t dataset)
+{
+  const std::string path = GetPath(dataset);
+  return path.substr(0, path.rfind('/') + 1);
+}
+
 std::string GetLastWord(const std::string& path)
 {
   return path.substr(path.rfind('/') + 1);
@@ -55,8 +62,7 @@ AxisNotes ReadOpenPmd(
     return notes;
   }
   const std::string path = GetPath(dataset);
-  const HdfHandle parent(
-    H5Gopen2(file, path.substr(0, path.rfind('/')).c_str(), H5P_DEFAULT), &H5Gclose);
+  const HdfHandle parent(H5Gopen2(file, GetGroupPath(dataset).c_str(), H5P_DEFAULT), &H5Gclose);
   const hid_t record = H5Aexists(dataset, "axisLabels") > 0 ? dataset : parent.Get();
   std::vector<std::string> labels = ReadHdfTexts(record, "axisLabels");
   const std::vector<double> spacing = ReadHdfNumbers(record, "gridSpacing");
@@ -101,9 +107,7 @@ AxisNotes ReadOpenPmd(
 AxisNotes ReadEmd(hid_t file, hid_t dataset, const std::vector<hsize_t>& shape)
 {
   AxisNotes notes;
-  const std::string path = GetPath(dataset);
-  const HdfHandle group(
-    H5Gopen2(file, path.substr(0, path.rfind('/') + 1).c_str(), H5P_DEFAULT), &H5Gclose);
+  const HdfHandle group(H5Gopen2(file, GetGroupPath(dataset).c_str(), H5P_DEFAULT), &H5Gclose);
   if (!group.IsOpen() || H5Aexists(group.Get(), "emd_group_type") <= 0)
   {
     return notes;
@@ -186,8 +190,7 @@ AxisNotes ReadHdfNotes(hid_t file, hid_t dataset, std::vector<std::string>& warn
   AxisNotes notes = ReadOpenPmd(file, dataset, shape, warnings);
   notes = notes.empty() ? ReadEmd(file, dataset, shape) : std::move(notes);
   notes = notes.empty() ? ReadScales(file, dataset, shape) : std::move(notes);
-  const std::string path = GetPath(dataset);
-  const std::string group = path.substr(0, path.rfind('/') + 1);
+  const std::string group = GetGroupPath(dataset);
   WarnOfOtherPlaces([=](const char* name) { return ReadHdfText(dataset, name); },
     [&](const std::string& name)
     {

@@ -110,6 +110,13 @@ HdfHandle OpenHdfDataset(hid_t group, const std::string& name)
   return { H5Dopen2(group, name.c_str(), access.Get()), &H5Dclose };
 }
 
+HdfHandle OpenHdfObject(hid_t group, const std::string& name)
+{
+  const HdfHandle access(H5Pcreate(H5P_LINK_ACCESS), &H5Pclose);
+  H5Pset_elink_cb(access.Get(), &CheckLinkedFile, nullptr);
+  return { H5Oopen(group, name.c_str(), access.Get()), &H5Oclose };
+}
+
 bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
 {
   const std::string in = GetFileName(dataset);

@@ -15,6 +15,8 @@ namespace vol
 /// A dataset, which may be behind external links: a linked file that is a pipe or a device is not opened. Not open where
 /// it cannot be opened. Under GetHdfLock.
 HdfHandle OpenHdfDataset(hid_t group, const std::string& name);
+/// Likewise, an object of any kind, such as a group behind an external link.
+HdfHandle OpenHdfObject(hid_t group, const std::string& name);
 
 /// Other files that an HDF5 file's datasets take values from: targets of external links, files of external
 /// storage, and sources of virtual datasets. The files that the sources refer to are not examined.

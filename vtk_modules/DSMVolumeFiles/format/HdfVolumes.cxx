@@ -68,12 +68,11 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
   for (const std::string& name : names)
   {
     const HdfHandle dataset = OpenHdfDataset(file, name);
-    if (!dataset.IsOpen())
+    if (!dataset.IsOpen() && !OpenHdfObject(file, name).IsOpen())
     {
       others.Closed.push_back(name);
-      continue;
     }
-    if (!FindHdfValues(dataset.Get()))
+    if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
     {
       continue;
     }

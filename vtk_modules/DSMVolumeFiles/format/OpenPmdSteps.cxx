@@ -8,8 +8,9 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace vol
 {
@@ -17,7 +18,7 @@ namespace vol
 namespace
 {
 
-/// Where a mesh is.
+/// The place of a mesh in a file.
 struct MeshPlace
 {
   std::uint64_t Iteration;
@@ -42,31 +43,24 @@ std::optional<MeshPlace> FindPlace(
     dataset.substr(end + 1 + (isMesh ? meshes.size() : 0)) };
 }
 
-/// In seconds.
-std::optional<double> ReadTime(hid_t file, const std::string& iteration)
+/// Returns the times of the iterations in seconds, by their numbers; none where one has no time, or they do not rise.
+std::vector<double> ReadTimes(hid_t file, const std::map<std::uint64_t, std::string>& iterations,
+  std::vector<std::string>& warnings)
 {
-  const HdfHandle group(H5Gopen2(file, iteration.c_str(), H5P_DEFAULT), &H5Gclose);
-  const auto time = group.IsOpen() ? ReadHdfNumbers(group.Get(), "time") : std::vector<double>();
-  const auto unit =
-    group.IsOpen() ? ReadHdfNumbers(group.Get(), "timeUnitSI") : std::vector<double>();
-  return time.size() == 1 ? std::optional(time.front() * (unit.size() == 1 ? unit.front() : 1.0))
-                          : std::nullopt;
-}
-
-/// Of all iterations, where they rise; else none.
-std::vector<double> ReadTimes(hid_t file, const std::map<std::uint64_t, std::string>& iterations)
-{
-  std::vector<double> times;
-  for (const auto& [number, group] : iterations)
+  AxisNote note;
+  note.Name = "time";
+  for (const auto& [number, path] : iterations)
   {
-    const std::optional<double> time = ReadTime(file, group);
-    if (!time || (!times.empty() && !(times.back() < *time)))
+    const HdfHandle group(H5Gopen2(file, path.c_str(), H5P_DEFAULT), &H5Gclose);
+    const std::vector<double> time = ReadHdfNumbers(group.Get(), "time");
+    const std::vector<double> seconds = ReadHdfNumbers(group.Get(), "timeUnitSI");
+    if (time.size() != 1)
     {
       return {};
     }
-    times.push_back(*time);
+    note.Coordinates.push_back(time.front() * (seconds.size() == 1 ? seconds.front() : 1.0));
   }
-  return times;
+  return FindTimes(note, static_cast<int>(iterations.size()), warnings);
 }
 
 bool IsSameNote(const AxisNote& a, const AxisNote& b)
@@ -141,7 +135,7 @@ void JoinOpenPmdSteps(hid_t file, HdfVolumes& volumes)
   if (iterations.size() > 1)
   {
     volumes.Steps = static_cast<int>(iterations.size());
-    volumes.Times = ReadTimes(file, iterations);
+    volumes.Times = ReadTimes(file, iterations, volumes.Warnings);
     volumes.Missing = "mesh that all iterations have in one form. Give one of its datasets.";
   }
 }

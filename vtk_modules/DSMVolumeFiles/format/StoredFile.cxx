@@ -5,7 +5,6 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/BareFile.h"
 
 #include <algorithm>
 #include <cstring>

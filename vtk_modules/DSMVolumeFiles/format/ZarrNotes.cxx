@@ -41,9 +41,7 @@ AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, con
   for (std::size_t axis = 0; axis < count; ++axis)
   {
     AxisNote& note = notes[axis];
-    const std::filesystem::path name(note.Name);
-    if (!note.Name.empty() && name == name.filename() && note.Name != ".." &&
-      FindPathKind(beside + "/" + note.Name) == PathKind::Directory)
+    if (IsPlainName(note.Name) && FindPathKind(beside + "/" + note.Name) == PathKind::Directory)
     {
       const std::string coordinates = beside + "/" + note.Name;
       auto numbers = ReadZarrVector(coordinates, static_cast<std::uint64_t>(data.Shape[axis]));
