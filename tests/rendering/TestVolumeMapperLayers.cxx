@@ -191,3 +191,24 @@ TEST_F(VolumeMapperFog, TranslucentGeometryIsWhereItIsInAMedium)
   this->Window->SetDesiredUpdateRate(10.0);
   EXPECT_LT(this->GetError(), 4.0) << "while the camera moves";
 }
+
+TEST_F(VolumeMapperFog, OpaqueGeometryBehindKeepsTheWindowOpaque)
+{
+  this->Renderer->SetUseDepthPeeling(0);
+  this->Renderer->SetBackgroundAlpha(0.0);
+  const auto getAlpha = [&]
+  {
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixel;
+    this->Window->GetRGBACharPixelData(Size / 2, Size / 2, Size / 2, Size / 2, 0, pixel);
+    return static_cast<int>(pixel->GetValue(3));
+  };
+  const int alone = getAlpha();
+  EXPECT_GT(alone, 100);
+  EXPECT_LT(alone, 200);
+  this->Add({ { -24.0, -24.0, -12.0 }, { { 48.0, 0.0, 0.0 }, { 0.0, 48.0, 0.0 } },
+    { 0.1, 0.9, 0.4 }, 1.0 });
+  EXPECT_EQ(getAlpha(), 255);
+  this->Renderer->SetUseDepthPeeling(1);
+  EXPECT_LT(this->GetError(), 1.0) << "the colors";
+}

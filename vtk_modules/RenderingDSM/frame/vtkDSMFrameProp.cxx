@@ -208,6 +208,7 @@ public:
 
   vtkDSMFrameTextures Textures;
   vtkDSMFrameLayers Layers;
+  bool IsAmongTranslucent = false;
   Drawing How = Drawing::All;
   double Bounds[6];
   vtkNew<vtkMatrix4x4> Projection;
@@ -245,6 +246,11 @@ void vtkDSMFrameProp::SetLayers(
   this->Self->Projection->DeepCopy(projection);
   std::copy_n(bounds, 6, this->Self->Bounds);
   this->Modified();
+}
+
+void vtkDSMFrameProp::SetIsAmongTranslucent(bool isAmong)
+{
+  this->Self->IsAmongTranslucent = isAmong;
 }
 
 void vtkDSMFrameProp::Clear()
@@ -289,10 +295,20 @@ int vtkDSMFrameProp::RenderOpaqueGeometry(vtkViewport* viewport)
 
 vtkTypeBool vtkDSMFrameProp::HasTranslucentPolygonalGeometry()
 {
-  return !this->Self->Layers.IsEmpty();
+  return this->Self->IsAmongTranslucent && !this->Self->Layers.IsEmpty();
 }
 
 int vtkDSMFrameProp::RenderTranslucentPolygonalGeometry(vtkViewport* viewport)
+{
+  return this->Self->IsAmongTranslucent ? this->DrawLayers(viewport) : 0;
+}
+
+int vtkDSMFrameProp::RenderVolumetricGeometry(vtkViewport* viewport)
+{
+  return this->Self->IsAmongTranslucent ? 0 : this->DrawLayers(viewport);
+}
+
+int vtkDSMFrameProp::DrawLayers(vtkViewport* viewport)
 {
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   if (!renderer || this->Self->Layers.IsEmpty() || renderer->GetSelector())

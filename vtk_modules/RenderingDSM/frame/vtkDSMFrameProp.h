@@ -46,10 +46,17 @@ public:
     Drawing drawing = Drawing::All);
 
   /**
-   * The same for a frame whose surfaces have been kept apart: they are drawn one by one among the
-   * renderer's translucent geometry. Colors and alpha are those of the surfaces (not premultiplied).
+   * The same for a frame whose surfaces have been kept apart: they are drawn one by one. Colors and alpha are those
+   * of the surfaces (not premultiplied).
    */
   void SetLayers(const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6]);
+
+  /**
+   * Set this if the renderer has translucent geometry of other props: such surfaces are then drawn among it.
+   * Otherwise they are drawn where VTK draws volumes, since VTK's pass for translucent geometry makes holes in the
+   * window's alpha where opaque geometry is behind. Off by default.
+   */
+  void SetIsAmongTranslucent(bool isAmong);
 
   /**
    * Other bounds for the same frame. Nothing happens without a frame.
@@ -65,6 +72,7 @@ public:
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   vtkTypeBool HasTranslucentPolygonalGeometry() override;
   int RenderTranslucentPolygonalGeometry(vtkViewport* viewport) override;
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
 protected:
@@ -72,6 +80,8 @@ protected:
   ~vtkDSMFrameProp() override;
 
 private:
+  int DrawLayers(vtkViewport* viewport);
+
   vtkDSMFrameProp(const vtkDSMFrameProp&) = delete;
   void operator=(const vtkDSMFrameProp&) = delete;
 

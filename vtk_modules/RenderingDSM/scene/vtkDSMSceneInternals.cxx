@@ -10,6 +10,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
+#include "vtkVolume.h"
 
 #include <algorithm>
 #include <chrono>
@@ -294,6 +295,10 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
   {
     this->AddWholeView(request, bounds);
   }
+  const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
+  this->Prop->SetIsAmongTranslucent(std::any_of(others.begin(), others.end(),
+    [](vtkProp* prop)
+    { return vtkVolume::SafeDownCast(prop) || prop->HasTranslucentPolygonalGeometry(); }));
   this->Delivery.Show(request, std::move(picture), this->Renderer->GetActiveCamera(), projection,
     bounds, hasEdges, this->Prop);
 }
