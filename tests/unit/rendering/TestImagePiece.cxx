@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/build/CellAverages.h"
+#include "DSMRayTracing/look/PackedColor.h"
 #include "vtkDSMCellPiece.h"
 #include "vtkDSMImagePiece.h"
 
@@ -169,6 +170,36 @@ TEST(ImagePiece, TypesKeepSizeAndSign)
     array.TakeReference(vtkDataArray::CreateDataArray(number));
     EXPECT_EQ(vtkDSMImagePiece::GetScalarType(array, 0), type) << array->GetClassName();
   }
+}
+
+/// VTK's own conversion takes numbers modulo 256.
+TEST(ImagePiece, ColorsDoNotWrapAround)
+{
+  const auto read = [](int type, const std::vector<double>& values)
+  {
+    const auto image = MakeImage();
+    vtkSmartPointer<vtkDataArray> array;
+    array.TakeReference(vtkDataArray::CreateDataArray(type));
+    array->SetNumberOfComponents(4);
+    array->SetNumberOfTuples(image->GetNumberOfPoints());
+    for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
+    {
+      array->SetTuple(tuple, values.data());
+    }
+    const glm::vec4 color =
+      rt::PackedColor::Get(Read<std::uint32_t>(image, array, vtkDSMImagePiece::Color, Some)[0]);
+    return std::vector<int>{ static_cast<int>(color.x * 255.0f + 0.5f),
+      static_cast<int>(color.y * 255.0f + 0.5f), static_cast<int>(color.z * 255.0f + 0.5f),
+      static_cast<int>(color.w * 255.0f + 0.5f) };
+  };
+  EXPECT_EQ(read(VTK_UNSIGNED_CHAR, { 0, 7, 254, 255 }), (std::vector<int>{ 0, 7, 254, 255 }));
+  EXPECT_EQ(
+    read(VTK_UNSIGNED_SHORT, { 0, 255, 32896, 65535 }), (std::vector<int>{ 0, 1, 128, 255 }));
+  EXPECT_EQ(read(VTK_INT, { -5, 130, 255, 1000 }), (std::vector<int>{ 0, 130, 255, 255 }));
+  EXPECT_EQ(read(VTK_CHAR, { -5, 1, 100, 127 }), (std::vector<int>{ 0, 1, 100, 127 }));
+  EXPECT_EQ(read(VTK_FLOAT, { -0.5, 0.5, 1.0, 1.5 }), (std::vector<int>{ 0, 128, 255, 255 }));
+  EXPECT_EQ(
+    read(VTK_DOUBLE, { NAN, 1e300, -INFINITY, INFINITY }), (std::vector<int>{ 0, 255, 0, 255 }));
 }
 
 TEST(ImagePiece, DuplicateCellsAreTrimmedAndHiddenPointsMasked)

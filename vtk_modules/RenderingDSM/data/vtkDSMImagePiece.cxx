@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMRayTracing/look/PackedColor.h"
+#include "vtkDSMColorBytes.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
 
@@ -209,7 +210,8 @@ void ReadColors(vtkDataArray* array, const Box& all, const Box& samples, std::by
   }
   vtkNew<vtkScalarsToColors> conversion;
   vtkSmartPointer<vtkUnsignedCharArray> colors;
-  colors.TakeReference(conversion->MapScalars(values, VTK_COLOR_MODE_DIRECT_SCALARS, 0));
+  colors.TakeReference(
+    conversion->MapScalars(vtkDSMColorBytes::Convert(values), VTK_COLOR_MODE_DIRECT_SCALARS, 0));
   for (std::int64_t sample = 0; sample < samples.GetCount(); ++sample)
   {
     const std::uint32_t packed = rt::PackedColor::Make(colors->GetPointer(4 * sample));

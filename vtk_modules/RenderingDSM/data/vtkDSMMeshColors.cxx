@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMMeshColors.h"
 
+#include "vtkDSMColorBytes.h"
+
 #include "vtkDataArray.h"
 #include "vtkMapper.h"
 #include "vtkPolyData.h"
@@ -113,11 +115,16 @@ vtkDSMMeshColors::vtkDSMMeshColors(vtkMapper* mapper, vtkPolyData* data)
     this->Found = State::Text;
     return;
   }
-  const bool colored = HoldsColors(mapper, array) || DependsOnTable(mapper, array);
-  if (colored)
+  const bool holdsColors = HoldsColors(mapper, array);
+  if (holdsColors || DependsOnTable(mapper, array))
   {
+    vtkSmartPointer<vtkAbstractArray> values = array;
+    if (holdsColors)
+    {
+      values = vtkDSMColorBytes::Convert(numbers);
+    }
     this->Colors.TakeReference(mapper->GetLookupTable()->MapScalars(
-      array, mapper->GetColorMode(), mapper->GetArrayComponent()));
+      values, mapper->GetColorMode(), mapper->GetArrayComponent()));
   }
   else
   {
