@@ -4,9 +4,11 @@
 
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
+#include "vtkDSMLightOptions.h"
 #include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
+#include "vtkLight.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
@@ -190,6 +192,138 @@ TEST_F(VolumeMapper, IsShadedAsTheRayCastMapper)
   this->Volume->SetMapper(this->Mapper); // the others go
 }
 
+/// Lamps that are no headlight, ambient light of lamps, and light from one side only.
+TEST_F(VolumeMapper, IsLitAsTheRayCastMapper)
+{
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
+  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.8);
+  opacity->AddPoint(0.3, 0.4);
+  opacity->AddPoint(0.44, 0.0);
+  vtkNew<vtkVolumeProperty> property;
+  property->SetInterpolationTypeToLinear();
+  property->SetColor(colors);
+  property->SetScalarOpacity(opacity);
+  property->SetScalarOpacityUnitDistance(4.0);
+  property->ShadeOn();
+  property->SetAmbient(0.5);
+  property->SetDiffuse(0.7);
+  this->Volume->SetProperty(property);
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkLight> lamp;
+  lamp->SetLightTypeToSceneLight();
+  lamp->SetPosition(1.0, 0.3, 0.6);
+  lamp->SetFocalPoint(0.0, 0.0, 0.0);
+  this->Renderer->RemoveAllLights();
+  this->Renderer->AddLight(lamp);
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetAutoAdjustSampleDistances(0);
+  theirs->SetSampleDistance(0.25f);
+  vtkNew<vtkDSMVolumeMapper> ours;
+  const auto compare = [&](const char* what)
+  {
+    auto found = this->Draw(ours);
+    EXPECT_LT(GetDifference(found, this->Draw(theirs)), 2.0) << what;
+    return found;
+  };
+  const auto twoSided = compare("ambient light is the lamp's, which is black");
+  this->Renderer->TwoSidedLightingOff();
+  const auto oneSided = compare("one side");
+  EXPECT_GT(GetDifference(oneSided, twoSided), 3.0);
+  lamp->SetAmbientColor(0.1, 0.5, 0.9);
+  EXPECT_GT(GetDifference(compare("ambient light"), oneSided), 5.0);
+  this->Volume->SetMapper(this->Mapper); // the others go
+}
+
+/// A medium as dense as a solid, in which gradients leave a step in the middle only.
+TEST_F(VolumeMapper, GradientsThinADenseMedium)
+{
+  const auto image = MakeBall();
+  vtkDataArray* const values = image->GetPointData()->GetScalars();
+  for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
+  {
+    values->SetComponent(point, 0, image->GetPoint(point)[2] < 0.0 ? 200.0 : 100.0);
+  }
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 1.0, 1.0, 1.0);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.9);
+  vtkNew<vtkPiecewiseFunction> gradientOpacity;
+  gradientOpacity->AddPoint(5.0, 0.0);
+  gradientOpacity->AddPoint(20.0, 1.0);
+  vtkNew<vtkVolumeProperty> property;
+  property->SetColor(colors);
+  property->SetScalarOpacity(opacity);
+  property->SetGradientOpacity(gradientOpacity);
+  property->SetInterpolationTypeToLinear();
+  this->Volume->SetProperty(property);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SetInputData(image);
+  this->Renderer->AddVolume(this->Volume);
+  vtkCamera* const camera = this->Renderer->GetActiveCamera();
+  camera->ParallelProjectionOn();
+  camera->SetParallelScale(10.0);
+  camera->SetViewUp(0.0, 0.0, 1.0);
+  camera->SetPosition(0.0, 60.0, 0.0);
+  for (const bool isLit : { false, true })
+  {
+    property->SetShade(isLit);
+    this->Mapper->GetLightOptions()->SetShadows(isLit);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(Size / 2, 0, Size / 2, Size - 1, 0, pixels);
+    for (int row = 0; row < Size; ++row)
+    {
+      const double z = (row + 0.5 - Size / 2) * 20.0 / Size;
+      const int gray = pixels->GetTypedComponent(row, 0);
+      if (z < -1.5 || z > 1.0)
+      {
+        EXPECT_EQ(gray, 0) << "z " << z << ", where values do not grow";
+      }
+      else if (z > -0.5 && z < 0.0 && !isLit)
+      {
+        EXPECT_GE(gray, 254) << "z " << z << ", at the step";
+      }
+    }
+  }
+}
+
+/// Whatever the volume's scale is. VTK's mappers do the same.
+TEST_F(VolumeMapper, UnitDistanceIsOneOfTheData)
+{
+  const auto image = MakeBall();
+  image->GetPointData()->GetScalars()->Fill(0.5);
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 1.0, 1.0, 1.0);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.1);
+  vtkNew<vtkVolumeProperty> property;
+  property->SetColor(colors);
+  property->SetScalarOpacity(opacity);
+  property->SetScalarOpacityUnitDistance(4.0);
+  property->SetInterpolationTypeToLinear();
+  this->Volume->SetProperty(property);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SetInputData(image);
+  this->Renderer->AddVolume(this->Volume);
+  vtkCamera* const camera = this->Renderer->GetActiveCamera();
+  camera->ParallelProjectionOn();
+  camera->SetPosition(0.0, 0.0, 600.0);
+  for (const double scale : { 0.1, 1.0, 8.0 })
+  {
+    this->Volume->SetScale(1.0, 1.0, scale);
+    this->Renderer->ResetCameraClippingRange();
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixel;
+    this->Window->GetPixelData(Size / 2, Size / 2, Size / 2, Size / 2, 0, pixel);
+    const double length = 0.5 * Edge; // along z
+    EXPECT_NEAR(pixel->GetTypedComponent(0, 0), 255.0 * (1.0 - std::pow(0.9, length / 4.0)), 1.0)
+      << scale;
+  }
+}
+
 /// Beside the logarithms of the values with functions that are linear in these.
 TEST_F(VolumeMapper, LowDecadesOfALogarithmicMapAreSeen)
 {
@@ -246,6 +380,10 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Volume->GetProperty()->ShadeOn();
   this->Window->Render();
   EXPECT_FALSE(observer->GetError() || observer->GetWarning());
+  this->Mapper->ComputeNormalFromOpacityOn();
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("ComputeNormalFromOpacityOff"), std::string::npos);
+  this->Mapper->ComputeNormalFromOpacityOff();
   this->Volume->GetProperty()->SetTransferFunctionModeTo2D();
   this->Window->Render();
   EXPECT_NE(observer->GetWarningMessage().find("two-dimensional"), std::string::npos);

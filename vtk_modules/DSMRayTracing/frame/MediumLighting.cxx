@@ -214,7 +214,7 @@ void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
   }
 }
 
-/// As VTK's ray cast mappers shade (vtkVolumeShaderComposer), on both sides alike.
+/// As VTK's ray cast mappers shade (vtkVolumeShaderComposer).
 Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& position,
   const glm::dvec3& toViewer, const Place* arriving) const
 {
@@ -223,12 +223,16 @@ Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& positio
   const glm::dvec3 color(piece.Amount[0], piece.Amount[1], piece.Amount[2]);
   const double ambient = arriving ? arriving->Ambient : 1.0;
   const double surfacePart = 1.0 - look.Scattering;
-  glm::dvec3 lit =
-    look.Shade ? surfacePart * ambient * surface.Ambient * color : surfacePart * color;
+  glm::dvec3 lit = look.Shade ? glm::dvec3(0.0) : surfacePart * color;
   for (std::size_t number = 0; number < this->World.Lights.size(); ++number)
   {
     const Light& lamp = this->World.Lights[number];
     const Incidence incidence = GetIncidence(lamp, position);
+    if (look.Shade)
+    {
+      lit += surfacePart * ambient * surface.Ambient *
+        (lamp.IsLoneHeadlight ? color : piece.Amount[3] * glm::dvec3(lamp.AmbientColor));
+    }
     glm::dvec3 light = incidence.Attenuation * glm::dvec3(lamp.Color);
     if (arriving && !arriving->Lamps.empty())
     {
@@ -236,9 +240,10 @@ Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& positio
     }
     lit += look.Scattering * ambient *
       GetPhase(look.Anisotropy, glm::dot(incidence.Direction, toViewer)) * light * color;
-    if (look.Shade && piece.Normal != glm::dvec3(0.0))
+    const double along = -glm::dot(piece.Normal, incidence.Direction);
+    const double cosine = this->World.Transport.TwoSided ? std::abs(along) : along;
+    if (look.Shade && cosine > 0.0)
     {
-      const double cosine = std::abs(glm::dot(piece.Normal, incidence.Direction));
       lit += surfacePart * ambient * surface.Diffuse * cosine * light * color;
       const double highlight = glm::dot(glm::reflect(incidence.Direction, piece.Normal), toViewer);
       if (surface.Specular > 0.0f && highlight > 0.0)

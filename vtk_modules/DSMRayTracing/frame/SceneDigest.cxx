@@ -18,6 +18,7 @@ void Add(ObjectDigest& digest, const Light& light)
   digest.Add(light.Position);
   digest.Add(light.Direction);
   digest.Add(light.Color);
+  digest.Add(light.AmbientColor);
   digest.Add(light.ConeCosine);
   digest.Add(light.Exponent);
   digest.Add(light.Attenuation);
@@ -26,6 +27,7 @@ void Add(ObjectDigest& digest, const Light& light)
 void Add(ObjectDigest& digest, const LightTransport& transport)
 {
   digest.Add(transport.Shadows);
+  digest.Add(transport.TwoSided);
   digest.Add(transport.FaintShadows);
   digest.Add(transport.LightRadius);
   digest.Add(transport.AmbientOcclusionSamples);

@@ -7,7 +7,7 @@
 namespace rt
 {
 
-/// World space. Color includes the intensity.
+/// World space. Colors include the intensity.
 struct Light
 {
   enum class Kind
@@ -24,6 +24,8 @@ struct Light
   /// Unit, from the light into the scene.
   glm::dvec3 Direction{ 0.0, 0.0, -1.0 };
   glm::vec3 Color{ 1.0f };
+  /// The light that it adds in shaded media, from all sides. Ignored if it is a lone headlight, as in VTK.
+  glm::vec3 AmbientColor{ 0.0f };
   /// Cosine of the cone's half angle, exponent of the fall-off within it, and constant, linear and
   /// quadratic attenuation, as in vtkLight.
   float ConeCosine = 0.0f;

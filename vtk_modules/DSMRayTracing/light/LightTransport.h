@@ -13,6 +13,8 @@ namespace rt
 struct LightTransport
 {
   bool Shadows = false;
+  /// Shaded media are lit from both sides of the gradient; else only where light travels along it.
+  bool TwoSided = true;
   /// Without them: the brightest light casts some that take away only a part of its light. One ray for each
   /// hit shows depth, and nothing becomes black.
   bool FaintShadows = false;

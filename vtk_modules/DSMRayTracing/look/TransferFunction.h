@@ -25,7 +25,7 @@ public:
   static constexpr int Bins = 4096;
 
   /// `samples`: one more than bins, evenly spaced from `first` to `last`, which is greater. Red, green, blue (straight), and
-  /// extinction (w): optical depth in a unit of world length. `cellLength`, in world space: of two extinctions with which
+  /// extinction (w): optical depth in a unit of length. `cellLength`: of two extinctions with which
   /// a cell is opaque, one is as good as the other.
   TransferFunction(
     double first, double last, const std::vector<glm::dvec4>& samples, double cellLength = 0.0);

@@ -9,9 +9,11 @@
 #include "DSMRayTracing/object/ObjectDigest.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -40,12 +42,15 @@ struct MediumOf
   std::shared_ptr<const typename FieldType::Values> ColorValues = nullptr;
   std::shared_ptr<const ColorMap> Colors = nullptr;
   int Group = 0; ///< MediumTracer::GetGroup; of up to four media
+  /// From world space to that in which the function measures lengths; the linear part.
+  glm::dmat3 WorldToSpace{ 1.0 };
 
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
   {
     this->Field.AddTo(digest);
     digest.Add(this->Function->GetDigest());
+    digest.Add(this->WorldToSpace);
     digest.Add(this->Look);
     digest.Add(this->Clipping);
     digest.Add(this->ColorValues != nullptr);
@@ -93,6 +98,7 @@ public:
     {
       return 0;
     }
+    light.SetSpace(rays, wanted, this->Medium.WorldToSpace);
     return this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {
@@ -111,26 +117,76 @@ public:
   bool HasLateExtinction() const override { return this->Medium.Look.Gradients != nullptr; }
 
   /// Gradients hardly change within.
-  double GetJoinedLength() const override { return this->Medium.Field.GetFinestLength(); }
+  double GetJoinedLength() const override
+  {
+    return this->Medium.Field.GetFinestLength(this->Medium.WorldToSpace);
+  }
 
   void Describe(const Ray* rays, RayMask wanted, MediumLight& light) const override
   {
-    std::vector<glm::dvec3> points;
-    std::vector<MediumPiece*> pieces;
+    std::size_t next[MaxRays];
+    double left[MaxRays]; // by the pieces before the next
     ForEachRay(wanted,
       [&](int ray)
       {
-        for (std::size_t number = light.FirstPiece[ray]; number < light.Pieces[ray].size();
-             ++number)
-        {
-          MediumPiece& piece = light.Pieces[ray][number];
-          if (piece.Share > MediumLight::LeastShare)
-          {
-            pieces.push_back(&piece);
-            points.push_back(rays[ray].Origin + piece.GetMiddle() * rays[ray].Direction);
-          }
-        }
+        next[ray] = light.FirstPiece[ray];
+        left[ray] = 1.0;
       });
+    std::vector<glm::dvec3> points;
+    std::vector<MediumPiece*> pieces;
+    for (RayMask open = wanted; open != 0;)
+    {
+      points.clear();
+      pieces.clear();
+      ForEachRay(open,
+        [&](int ray)
+        {
+          const std::size_t end = this->GetRoundEnd(light.Pieces[ray], next[ray]);
+          for (std::size_t number = next[ray]; number < end; ++number)
+          {
+            MediumPiece& piece = light.Pieces[ray][number];
+            if (left[ray] * piece.Share > MediumLight::LeastShare)
+            {
+              pieces.push_back(&piece);
+              points.push_back(rays[ray].Origin + piece.GetMiddle() * rays[ray].Direction);
+            }
+          }
+        });
+      this->DescribePieces(points, pieces);
+      open = FindRays(open,
+        [&](int ray)
+        {
+          std::vector<MediumPiece>& own = light.Pieces[ray];
+          const std::size_t end = this->GetRoundEnd(own, next[ray]);
+          for (; this->HasLateExtinction() && next[ray] < end; ++next[ray])
+          {
+            MediumPiece& piece = own[next[ray]];
+            const double passed = std::exp(-piece.Amount[3]);
+            piece.Share = left[ray] * (1.0 - passed);
+            left[ray] *= passed;
+            if (left[ray] < light.DarkBelow)
+            {
+              own.resize(next[ray] + 1);
+              return false;
+            }
+          }
+          return end < own.size();
+        });
+    }
+  }
+
+private:
+  /// The end of the pieces that are described at once, from `first` on. Few, where the ray may become dark.
+  std::size_t GetRoundEnd(const std::vector<MediumPiece>& pieces, std::size_t first) const
+  {
+    constexpr std::size_t most = 16;
+    return this->HasLateExtinction() ? std::min(pieces.size(), first + most) : pieces.size();
+  }
+
+  /// Describes pieces, whose middles are at `points`.
+  void DescribePieces(
+    const std::vector<glm::dvec3>& points, const std::vector<MediumPiece*>& pieces) const
+  {
     if (this->Medium.ColorValues)
     {
       this->SetColors(points, pieces);
@@ -158,7 +214,6 @@ public:
     }
   }
 
-private:
   /// Gives pieces the colors that there are at points.
   void SetColors(
     const std::vector<glm::dvec3>& points, const std::vector<MediumPiece*>& pieces) const

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/object/ObjectDigest.h"
 #include "DSMRayTracing/ray/ClipRegion.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -36,6 +37,8 @@ struct SumOf
   std::shared_ptr<const TransferFunction> Function; ///< from CreateFunction; not null
   bool IsMean = false;
   ClipRegion Clipping;
+  /// From world space to that in which the function measures lengths; the linear part.
+  glm::dmat3 WorldToSpace{ 1.0 };
 
   /// Values of which the weight is 0 do not count.
   struct Sample
@@ -43,7 +46,7 @@ struct SumOf
     double Value;
     double Weight; ///< weight in the mean: 0 or 1
   };
-  /// `samples`: as TransferFunction has them; values are sums over a unit of world length.
+  /// `samples`: as TransferFunction has them; values are sums over a unit of length.
   static std::shared_ptr<const TransferFunction> CreateFunction(
     double first, double last, const std::vector<Sample>& samples, double unit)
   {
@@ -63,6 +66,7 @@ struct SumOf
   {
     this->Field.AddTo(digest);
     digest.Add(this->Function->GetDigest());
+    digest.Add(this->WorldToSpace);
     digest.Add(this->IsMean);
     digest.Add(this->Clipping);
   }
@@ -102,6 +106,7 @@ public:
   {
     const auto sums = std::make_unique<MediumLight>();
     sums->Begin(rays, wanted);
+    sums->SetSpace(rays, wanted, this->Medium.WorldToSpace);
     this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {

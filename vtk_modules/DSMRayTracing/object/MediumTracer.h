@@ -46,9 +46,10 @@ public:
   virtual bool IsLit() const { return false; }
   virtual bool HasLateExtinction() const { return false; }
   ///@}
-  /// World length up to which pieces may be joined, before they are described.
+  /// Length up to which pieces may be joined before they are described, in the space of the medium (MediumLight::SetSpace).
   virtual double GetJoinedLength() const { return 0.0; }
-  /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on.
+  /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on. Where density is known only
+  /// then, drops the pieces behind the place where a ray is dark.
   virtual void Describe(const Ray* /*rays*/, RayMask /*wanted*/, MediumLight&) const {}
 };
 

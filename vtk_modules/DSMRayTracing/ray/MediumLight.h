@@ -7,6 +7,7 @@
 #include "DSMRayTracing/ray/RayMask.h"
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -27,11 +28,12 @@ struct MediumPiece
   double End;
   /// Red, green and blue that the medium emits there, and its optical depth.
   Lanes Amount;
-  /// Opacity that the piece adds to the ray if its medium is the only one.
+  /// Opacity that the piece adds to the ray if its medium is the only one. Until a piece of late extinction is described:
+  /// its own opacity, which is an upper bound.
   double Share = 0.0;
   /// Which light makes it shine; null: it shines by itself.
   const MediumLook* Look = nullptr;
-  /// Unit, in world space, along the gradient of the values; 0: there is none.
+  /// Unit, in world space, against the gradient of the values; 0: there is none.
   glm::dvec3 Normal{ 0.0 };
   int Group = 0; ///< MediumTracer::GetGroup
 
@@ -65,11 +67,18 @@ public:
     ForEachRay(wanted,
       [&](int ray)
       {
-        this->Length[ray] = glm::length(rays[ray].Direction);
         this->First[ray] = std::numeric_limits<double>::infinity();
         this->Pieces[ray].clear();
       });
+    this->SetSpace(rays, wanted, glm::dmat3(1.0));
     this->ClearSums(wanted);
+  }
+  /// Sets the space in which the current medium measures lengths: the linear part of the way from world space to there.
+  void SetSpace(const Ray* rays, RayMask wanted, const glm::dmat3& worldToSpace)
+  {
+    this->WorldToSpace = worldToSpace;
+    ForEachRay(wanted,
+      [&](int ray) { this->Length[ray] = glm::length(worldToSpace * rays[ray].Direction); });
   }
   void ClearSums(RayMask wanted)
   {
@@ -106,7 +115,8 @@ public:
   void Keep(int ray, double begin, double end, const Lanes& amount, double passed)
   {
     std::vector<MediumPiece>& pieces = this->Pieces[ray];
-    const double share = this->Transmittance[ray] * (1.0 - passed);
+    const double share =
+      (this->HasLateExtinction ? 1.0 : this->Transmittance[ray]) * (1.0 - passed);
     if (pieces.size() > this->FirstPiece[ray] &&
       this->IsJoined(ray, pieces.back(), end, amount, share) &&
       begin <= pieces.back().End + 1e-6 * (end - begin))
@@ -154,7 +164,7 @@ public:
   }
 
   /// For each ray:
-  double Length[MaxRays];        ///< world length of a unit of T
+  double Length[MaxRays];        ///< length of a unit of T, in the current medium's space
   double Transmittance[MaxRays]; ///< transmittance of all pieces so far
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
   double Last[MaxRays];          ///< T where the last of it ends, where there is anything
@@ -164,8 +174,11 @@ public:
   bool KeepsPieces = false;
   std::vector<MediumPiece> Pieces[MaxRays];
   std::size_t FirstPiece[MaxRays]; ///< index of the first piece of the current medium
-  /// World length up to which thin pieces that follow one another are joined into one.
+  glm::dmat3 WorldToSpace{ 1.0 };  ///< SetSpace
+  /// Length up to which thin pieces that follow one another are joined into one, in that space.
   double JoinedLength = 0.0;
+  /// MediumTracer::HasLateExtinction of the current medium.
+  bool HasLateExtinction = false;
   /// Rays with less transmittance than this end in the current medium.
   double DarkBelow = Dark;
 

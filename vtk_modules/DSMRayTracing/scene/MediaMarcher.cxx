@@ -118,16 +118,18 @@ void MediaMarcher::March(const MediumTracer& medium, bool isDescribed, const Ray
 {
   // Each ends where it is dark by itself: so are the others behind that.
   light.ClearSums(wanted);
-  light.DarkBelow = medium.HasLateExtinction() ? 0.0
-    : medium.GetGroup() != 0                   ? MediumLight::DarkInGroup
-                                               : MediumLight::Dark;
+  const double darkBelow = medium.GetGroup() != 0 ? MediumLight::DarkInGroup : MediumLight::Dark;
+  light.HasLateExtinction = medium.HasLateExtinction();
+  light.DarkBelow = light.HasLateExtinction ? 0.0 : darkBelow;
   light.JoinedLength = isDescribed ? medium.GetJoinedLength() : 0.0;
   ForEachRay(wanted, [&](int ray) { light.FirstPiece[ray] = light.Pieces[ray].size(); });
   medium.March(rays, wanted, beam, light);
+  light.DarkBelow = darkBelow;
   if (isDescribed)
   {
     medium.Describe(rays, wanted, light);
   }
+  light.HasLateExtinction = false;
   light.DarkBelow = MediumLight::Dark;
   if (medium.GetGroup() != 0)
   {

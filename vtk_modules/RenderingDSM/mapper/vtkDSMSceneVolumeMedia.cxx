@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <optional>
 #include <string>
@@ -88,12 +89,14 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
   this->Data->GetBounds(bounds);
   const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
-  const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
+  // As in all of VTK's mappers, the unit distance is one of the data, whatever the prop's scale is.
+  const glm::dmat3 worldToData = glm::inverse(glm::dmat3(dataToWorld));
   this->ForEachField(array, dataToWorld,
     [&](const auto& field, std::size_t part)
     {
       using FieldType = std::decay_t<decltype(field)>;
-      const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal, component);
+      const auto key = look.GetMediumKey(
+        range, field.GetFinestLength(worldToData), glm::length(upper - lower), component);
       const auto& make =
         this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
       if (!make)
@@ -104,8 +107,13 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
         return;
       }
       rt::SceneMedium medium = make(field, clipping);
+      if (auto* const sum = std::get_if<rt::SumOf<FieldType>>(&medium))
+      {
+        sum->WorldToSpace = worldToData;
+      }
       if (auto* const lit = std::get_if<rt::MediumOf<FieldType>>(&medium))
       {
+        lit->WorldToSpace = worldToData;
         lit->Look.Scattering = this->Mapper->GetScattering();
         lit->ColorValues = this->FindOwnColors<FieldType>(part);
         if (lit->ColorValues)

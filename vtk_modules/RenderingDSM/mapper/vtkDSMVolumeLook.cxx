@@ -189,6 +189,12 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   };
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+  if (property->GetShade(0) != 0 && this->Mapper->GetComputeNormalFromOpacity())
+  {
+    warnings.push_back("The mapper is to compute normals from the opacity, which DSM Ray Tracer "
+                       "does not do. The volume is shaded by the gradient of its values. Call "
+                       "ComputeNormalFromOpacityOff().");
+  }
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;

@@ -216,6 +216,7 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   double bounds[6];
   this->Members.GetBounds(bounds);
   scene.Transport = vtkDSMTranslation::ToTransport(this->Light, bounds, this->IsInteractive());
+  scene.Transport.TwoSided = this->Renderer->GetTwoSidedLighting() != 0;
   scene.Transport.Surroundings.Lower = scene.Transport.Surroundings.Upper =
     glm::vec3(static_cast<float>(this->Light->GetEnvironmentLight()));
   scene.View = vtkDSMTranslation::ToDebugView(this->Light);

@@ -572,7 +572,9 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
     const glm::dvec3 way = glm::dvec3(to[0], to[1], to[2]) - light.Position;
     const double length = glm::length(way);
     light.Direction = length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, -1.0);
-    light.Color = ToColor(source->GetDiffuseColor()) * static_cast<float>(source->GetIntensity());
+    const auto intensity = static_cast<float>(source->GetIntensity());
+    light.Color = ToColor(source->GetDiffuseColor()) * intensity;
+    light.AmbientColor = ToColor(source->GetAmbientColor()) * intensity;
     if (source->GetPositional())
     {
       light.Type =

@@ -46,7 +46,7 @@ public:
 
   /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values are
   /// from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in
-  /// world space.
+  /// the space of the data.
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(vtkVolumeProperty* property,
     int component, double weight, double first, double last, double cellLength, double diagonal);
 
@@ -59,7 +59,7 @@ public:
   /// number is transparent.
   static rt::ColorMap ToOpaqueColors(
     vtkVolumeProperty* property, int component, const bricks::ValueRange& range);
-  /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of world length. In a mean,
+  /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of length. In a mean,
   /// the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,
     double first, double last, const std::array<double, 2>& counted, double unit);

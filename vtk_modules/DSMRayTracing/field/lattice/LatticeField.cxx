@@ -38,9 +38,9 @@ double LatticeField::GetGrowth(const glm::dvec3& gradient) const
   return glm::length(gradient / lengths) * mean;
 }
 
-double LatticeField::GetFinestLength() const
+double LatticeField::GetFinestLength(const glm::dmat3& worldToSpace) const
 {
-  const glm::dmat3 edges(this->IndexToWorld);
+  const glm::dmat3 edges = worldToSpace * glm::dmat3(this->IndexToWorld);
   return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
 }
 

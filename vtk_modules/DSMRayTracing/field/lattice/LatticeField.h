@@ -7,6 +7,7 @@
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
@@ -76,9 +77,9 @@ struct LatticeField
   double GetGrowth(const glm::dvec3& gradient) const;
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// World length of a cell's shortest edge. A rectilinear grid gives that of a cell of mean size, because hits in its large
+  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a cell of mean size, because hits in its large
   /// cells are no more exact.
-  double GetFinestLength() const;
+  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const;
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 

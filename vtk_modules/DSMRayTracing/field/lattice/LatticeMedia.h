@@ -164,8 +164,9 @@ private:
           const typename Store::Pin pin =
             this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
           const bricks::VoxelBrick<T> voxels(pin.GetData());
-          const TransferTest<T> test(function, this->Kernel, glm::dmat3(field.IndexToWorld),
-            field.Voxels->Planes.get(), brick.Lower);
+          const TransferTest<T> test(function, this->Kernel,
+            light.WorldToSpace * glm::dmat3(field.IndexToWorld), field.Voxels->Planes.get(),
+            brick.Lower);
           const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
           open &= ~this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
         }

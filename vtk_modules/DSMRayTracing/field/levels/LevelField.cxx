@@ -44,11 +44,11 @@ ObjectTracer::Brick LevelField::FindBrick(const glm::dvec3& place) const
   return { nullptr, 0 };
 }
 
-double LevelField::GetFinestLength() const
+double LevelField::GetFinestLength(const glm::dmat3& worldToSpace) const
 {
   const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();
   const glm::dvec3 finest(scales.Get(scales.GetCount() - 1));
-  const glm::dmat3 edges(this->IndexToWorld);
+  const glm::dmat3 edges = worldToSpace * glm::dmat3(this->IndexToWorld);
   return std::min({ glm::length(edges[0]) / finest.x, glm::length(edges[1]) / finest.y,
     glm::length(edges[2]) / finest.z });
 }

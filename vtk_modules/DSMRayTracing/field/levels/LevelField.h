@@ -7,6 +7,7 @@
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
@@ -73,8 +74,8 @@ struct LevelField
   double GetGrowth(const glm::dvec3& gradient) const;
   /// A brick that has a place (world space) in its box, of the finest level of such; of no segment, where none is.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// World length of the shortest edge of a cell of the finest level.
-  double GetFinestLength() const;
+  /// Length of the shortest edge of a cell of the finest level, in the space to which the matrix leads.
+  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const;
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 

@@ -58,6 +58,7 @@ public:
   {
     MediumLight& all = *this->Unsorted;
     all.Begin(rays, wanted);
+    all.SetSpace(rays, wanted, light.WorldToSpace);
     all.KeepsPieces = true;
     all.JoinedLength = 0.0;
     all.DarkBelow = 0.0;
@@ -126,7 +127,7 @@ private:
             this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
           const bricks::VoxelBrick<T> voxels(pin.GetData());
           const glm::dvec3 scale(lattice.GetScales().Get(level));
-          glm::dmat3 axes(field.IndexToWorld);
+          glm::dmat3 axes = light.WorldToSpace * glm::dmat3(field.IndexToWorld);
           for (int axis = 0; axis < 3; ++axis)
           {
             axes[axis] /= scale[axis];
