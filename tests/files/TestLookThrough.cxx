@@ -71,7 +71,7 @@ public:
     vol::FileArray array;
     array.Type = bricks::ScalarType::Float32;
     array.Grid = { Samples, bricks::Index3(16) };
-    array.Valid.Fill = missing;
+    array.Valid.AddFill(missing);
     this->Arrays.push_back(array);
     this->Geometry.Points = Samples;
   }

@@ -41,13 +41,19 @@ with h5py.File(path("missing.h5"), "w") as file:
         ("whole nan", "<f4", 100, np.nan, None),
         ("short", "<i2", 100, -9999, "_FillValue"),
         ("byte", "|u1", 100, 255, "missing_value"),
+        ("ranged", "<i4", 100, -9999, "valid_range"),
+        ("two", "<i2", 100, -9999, "_FillValue"),
     ):
         stored = ball if scale == 1 else np.round(scale * ball)
         stored = np.where(is_missing, value, stored).astype(dtype)
+        if name in ("ranged", "two"):
+            stored[is_missing & (y > 0)] = 8888
         dataset = file.create_dataset(name, data=stored, chunks=(16, 10, 13), compression="gzip")
         if attribute:
             # As netCDF-4 has it: an array of one number.
-            dataset.attrs[attribute] = np.array([value], dtype)
+            dataset.attrs[attribute] = np.array([0, 1000] if name == "ranged" else [value], dtype)
+        if name == "two":
+            dataset.attrs["missing_value"] = np.array([8888, -1], dtype)
 for name, dtype, value, attribute in (("float", "<f4", 1e20, "missing_value"), ("short", "<i2", -9999, "_FillValue")):
     stored = np.where(is_missing, value, ball if dtype == "<f4" else np.round(100 * ball)).astype(dtype)
     save_zarr(f"missing_{name}.zarr", stored, compressor=Blosc("zstd"), chunks=(9, 40, 20))

@@ -148,7 +148,7 @@ TYPED_TEST(TestVoxelBrickBuilder, CellsWithAMissingValueHoldNoData)
   EXPECT_FALSE(valid.Exclude(type));
   valid.Lowest = 0.0;
   valid.Highest = 98.0;
-  valid.Fill = 7.0;
+  valid.AddFill(7.0);
   EXPECT_TRUE(valid.Exclude(type));
   const auto isValid = [](T value) { return value >= T(0) && value <= T(98) && value != T(7); };
   const bricks::BrickLattice lattice(volume.Points, type, true, 5);
@@ -185,20 +185,20 @@ TYPED_TEST(TestVoxelBrickBuilder, CellsWithAMissingValueHoldNoData)
 TEST(TestValidValues, FloatingPointGiantsStandForWhatIsBeyondThem)
 {
   bricks::ValidValues valid;
-  valid.Fill = 9.969209968386869e36; // as netCDF has it, for float and double
+  valid.Fills.front() = 9.969209968386869e36; // as netCDF has it, for float and double
   const bricks::MissingTest<float> isMissing(valid);
   EXPECT_TRUE(isMissing(9.96921e36f));
   EXPECT_TRUE(isMissing(1e38f));
   EXPECT_FALSE(isMissing(9.9e36f));
   EXPECT_FALSE(isMissing(-9.96921e36f));
-  valid.Fill = -1e20;
+  valid.Fills.front() = -1e20;
   EXPECT_TRUE(bricks::MissingTest<float>(valid)(-1e20f));
   EXPECT_TRUE(bricks::MissingTest<double>(valid)(-1e21));
   EXPECT_FALSE(bricks::MissingTest<double>(valid)(1e20));
-  valid.Fill = -9999.9;
+  valid.Fills.front() = -9999.9;
   EXPECT_TRUE(bricks::MissingTest<float>(valid)(-9999.9f));
   EXPECT_FALSE(bricks::MissingTest<float>(valid)(-10000.0f));
-  valid.Fill = -9999.0;
+  valid.Fills.front() = -9999.0;
   EXPECT_FALSE(valid.Exclude(bricks::ScalarType::UInt8));
   EXPECT_TRUE(bricks::MissingTest<std::int16_t>(valid)(-9999));
   EXPECT_FALSE(bricks::MissingTest<std::int16_t>(valid)(-10000));

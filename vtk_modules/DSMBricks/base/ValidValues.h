@@ -4,6 +4,8 @@
 
 #include "DSMBricks/base/ScalarType.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -21,12 +23,26 @@ struct ValidValues
 
   double Lowest = -std::numeric_limits<double>::infinity(); ///< values below are missing
   double Highest = std::numeric_limits<double>::infinity(); ///< values above are missing
-  double Fill = std::numeric_limits<double>::quiet_NaN(); ///< is missing itself; NaN: there is none
+  /// These are missing themselves; NaN: there is none.
+  std::array<double, 4> Fills = MakeNoFills();
 
   bool operator==(const ValidValues& other) const
   {
     return this->Lowest == other.Lowest && this->Highest == other.Highest &&
-      (this->Fill == other.Fill || (std::isnan(this->Fill) && std::isnan(other.Fill)));
+      std::equal(this->Fills.begin(), this->Fills.end(), other.Fills.begin(),
+        [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+  }
+
+  /// Returns false where there is no room for another one.
+  bool AddFill(double fill)
+  {
+    const auto place = std::find_if(this->Fills.begin(), this->Fills.end(),
+      [=](double known) { return std::isnan(known) || known == fill; });
+    if (place != this->Fills.end() && !std::isnan(fill))
+    {
+      *place = fill;
+    }
+    return place != this->Fills.end() || std::isnan(fill);
   }
 
   /// Returns whether any finite value of a type is missing.
@@ -39,8 +55,17 @@ struct ValidValues
         const auto least = static_cast<double>(Limits::lowest());
         const auto most = static_cast<double>(Limits::max());
         return this->Lowest > least || this->Highest < most ||
-          (this->Fill >= least && this->Fill <= most);
+          std::any_of(this->Fills.begin(), this->Fills.end(),
+            [=](double fill) { return fill >= least && fill <= most; });
       });
+  }
+
+private:
+  static std::array<double, 4> MakeNoFills()
+  {
+    std::array<double, 4> none{};
+    none.fill(std::numeric_limits<double>::quiet_NaN());
+    return none;
   }
 };
 
@@ -52,28 +77,34 @@ public:
   explicit MissingTest(const ValidValues& valid)
     : Valid(valid)
   {
-    if constexpr (std::is_floating_point_v<T>)
+    for (double& fill : this->Valid.Fills)
     {
-      // As the array has it. What T cannot hold stays beyond all values.
-      if (std::abs(valid.Fill) <= static_cast<double>(std::numeric_limits<T>::max()))
+      if constexpr (std::is_floating_point_v<T>)
       {
-        this->Valid.Fill = static_cast<double>(static_cast<T>(valid.Fill));
+        const bool isGiant = std::abs(fill) >= ValidValues::LeastGiant;
+        // As the array has it. What T cannot hold stays beyond all values.
+        if (std::abs(fill) <= static_cast<double>(std::numeric_limits<T>::max()))
+        {
+          fill = static_cast<double>(static_cast<T>(fill));
+        }
+        this->From = isGiant && fill > 0.0 ? std::min(this->From, fill) : this->From;
+        this->UpTo = isGiant && fill < 0.0 ? std::max(this->UpTo, fill) : this->UpTo;
       }
-      const bool isGiant = std::abs(valid.Fill) >= ValidValues::LeastGiant;
-      this->From = isGiant && valid.Fill > 0.0 ? this->Valid.Fill : this->From;
-      this->UpTo = isGiant && valid.Fill < 0.0 ? this->Valid.Fill : this->UpTo;
+      this->Count += std::isnan(fill) ? 0 : 1;
     }
   }
 
   bool operator()(T sample) const
   {
     const auto value = static_cast<double>(sample);
-    return !(value >= this->Valid.Lowest && value <= this->Valid.Highest) ||
-      value == this->Valid.Fill || value >= this->From || value <= this->UpTo;
+    const auto last = this->Valid.Fills.begin() + this->Count;
+    return !(value >= this->Valid.Lowest && value <= this->Valid.Highest) || value >= this->From ||
+      value <= this->UpTo || std::find(this->Valid.Fills.begin(), last, value) != last;
   }
 
 private:
   ValidValues Valid;
+  std::ptrdiff_t Count = 0; ///< of its fills
   double From = std::numeric_limits<double>::infinity();
   double UpTo = -std::numeric_limits<double>::infinity();
 };

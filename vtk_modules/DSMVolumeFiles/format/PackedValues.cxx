@@ -87,10 +87,15 @@ void PackedValues::TakeAttributes(const GetNumbers& getNumbers, bool isUnsigned,
   const auto wrapped = [wrap](double number) { return number < 0.0 ? number + wrap : number; };
   for (const char* const name : { "_FillValue", "missing_value" })
   {
-    if (const auto fill = find(name))
+    for (const double fill : getNumbers(name))
     {
-      this->Valid.Fill = wrapped(*fill);
-      break;
+      if (!this->Valid.AddFill(wrapped(fill)))
+      {
+        warn(name,
+          "declares more missing values than the " + std::to_string(this->Valid.Fills.size()) +
+            " that are honored. The others are shown as values.");
+        break;
+      }
     }
   }
   const std::vector<double> range = getNumbers("valid_range");
@@ -157,9 +162,9 @@ std::uint64_t PackedValues::GetStamp() const
     return 0;
   }
   bricks::ByteHash hash;
-  const double numbers[] = { this->Scale, this->Offset, this->Valid.Lowest, this->Valid.Highest,
-    this->Valid.Fill };
+  const double numbers[] = { this->Scale, this->Offset, this->Valid.Lowest, this->Valid.Highest };
   hash.Add(numbers, sizeof(numbers));
+  hash.Add(this->Valid.Fills.data(), sizeof(this->Valid.Fills));
   return hash.Get();
 }
 

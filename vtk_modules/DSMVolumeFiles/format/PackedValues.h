@@ -29,8 +29,9 @@ public:
 
   /// Numbers of an attribute; none where it does not exist, or has no numbers.
   using GetNumbers = std::function<std::vector<double>(const char* name)>;
-  /// Takes scale_factor, add_offset, _FillValue or else missing_value, valid_range or else valid_min and valid_max, and
-  /// _Unsigned. What cannot be honored becomes a sentence in `warnings`. `array`: its name.
+  /// Takes scale_factor, add_offset, _FillValue and missing_value, valid_range or else valid_min
+  /// and valid_max, and _Unsigned. What cannot be honored becomes a sentence in `warnings`.
+  /// `array`: its name.
   void TakeAttributes(const GetNumbers& getNumbers, bool isUnsigned, const std::string& array,
     std::vector<std::string>& warnings);
 

@@ -413,20 +413,30 @@ private:
       [&](auto zero)
       {
         using T = decltype(zero);
-        const std::pair<const char*, double> limits[] = { { "_FillValue", array.Valid.Fill },
-          { "valid_min", array.Valid.Lowest }, { "valid_max", array.Valid.Highest } };
-        for (const auto& [name, limit] : limits)
+        const auto write = [&](const char* name, const std::vector<double>& limits)
         {
-          // A double cannot tell the greatest integer of 64 bits from the one after it.
-          const auto exact = static_cast<long double>(limit);
-          const bool fits = exact >= std::numeric_limits<T>::lowest() &&
-            exact <= static_cast<long double>(std::numeric_limits<T>::max());
-          if (std::is_integral_v<T> && fits)
+          std::vector<T> numbers;
+          for (const double limit : limits)
           {
-            const auto number = static_cast<T>(limit);
-            this->File.WriteAttribute(dataset, name, GetHdfType(array.Type), &number, 1);
+            // A double cannot tell the greatest integer of 64 bits from the one after it.
+            const auto exact = static_cast<long double>(limit);
+            if (exact >= std::numeric_limits<T>::lowest() &&
+              exact <= static_cast<long double>(std::numeric_limits<T>::max()))
+            {
+              numbers.push_back(static_cast<T>(limit));
+            }
           }
-        }
+          if (std::is_integral_v<T> && !numbers.empty())
+          {
+            this->File.WriteAttribute(dataset, name, GetHdfType(array.Type), numbers.data(),
+              static_cast<int>(numbers.size()));
+          }
+        };
+        const auto& fills = array.Valid.Fills;
+        write("_FillValue", { fills.front() });
+        write("missing_value", { fills.begin() + 1, fills.end() });
+        write("valid_min", { array.Valid.Lowest });
+        write("valid_max", { array.Valid.Highest });
       });
   }
 

@@ -26,7 +26,8 @@ bricks::ValidValues FindValid(vtkDataArray* array, const vtkDSMImageArrays::Choi
   const bool isOne = array->GetNumberOfComponents() == 1 || choice.Component >= 0;
   if (file && isOne)
   {
-    valid.Fill = file->GetArray().Valid.Fill;
+    const bricks::ValidValues& own = file->GetArray().Valid;
+    valid = { std::max(valid.Lowest, own.Lowest), std::min(valid.Highest, own.Highest), own.Fills };
   }
   return valid;
 }

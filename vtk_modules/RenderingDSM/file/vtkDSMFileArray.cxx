@@ -362,6 +362,29 @@ auto DispatchType(bricks::ScalarType type, const Use& use)
   }
 }
 
+/// Makes integers numbers of a floating point type that has at least as many bytes, in place, with
+/// NaN for missing ones.
+void WithoutMissing(
+  const vol::FileArray& array, std::size_t count, bricks::ScalarType type, std::byte* samples)
+{
+  bricks::Dispatch(array.Type,
+    [&](auto number)
+    {
+      const bricks::MissingTest<decltype(number)> isMissing(array.Valid);
+      bricks::Dispatch(type,
+        [&](auto value)
+        {
+          for (std::size_t left = count; left-- > 0;)
+          {
+            std::memcpy(&number, samples + left * sizeof(number), sizeof(number));
+            value = isMissing(number) ? std::numeric_limits<decltype(value)>::quiet_NaN()
+                                      : static_cast<decltype(value)>(number);
+            std::memcpy(samples + left * sizeof(value), &value, sizeof(value));
+          }
+        });
+    });
+}
+
 template <class T>
 const vtkDSMFileValues* GetValuesAs(vtkAbstractArray* array)
 {
@@ -407,11 +430,16 @@ vtkSmartPointer<vtkDataArray> vtkDSMCreateFileArray(
 vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values)
 {
   const vol::FileArray& array = values.GetArray();
+  const bool isInteger = array.Type <= bricks::ScalarType::UInt64;
+  const bricks::ScalarType type = !isInteger || !array.Valid.Exclude(array.Type) ? array.Type
+    : bricks::GetBytes(array.Type) <= 2 ? bricks::ScalarType::Float32
+                                        : bricks::ScalarType::Float64;
   const auto made = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(vtkDSMGetFileArrayType(array.Type)));
+    vtkDataArray::CreateDataArray(vtkDSMGetFileArrayType(type)));
   made->SetName(array.Name.c_str());
   made->SetNumberOfComponents(array.Components);
-  const std::size_t bytes = static_cast<std::size_t>(values.GetCount()) * array.GetSampleBytes();
+  const std::size_t count = static_cast<std::size_t>(values.GetCount() * array.Components);
+  const std::size_t bytes = count * bricks::GetBytes(type);
   try
   {
     TakeRoom(bytes,
@@ -426,6 +454,10 @@ vtkSmartPointer<vtkDataArray> vtkDSMReadFileArray(const vtkDSMFileValues& values
     throw dsm::Error(DescribeArray(values) + error.what());
   }
   ReadAll(values, made->GetVoidPointer(0));
+  if (type != array.Type)
+  {
+    WithoutMissing(array, count, type, static_cast<std::byte*>(made->GetVoidPointer(0)));
+  }
   return made;
 }
 
