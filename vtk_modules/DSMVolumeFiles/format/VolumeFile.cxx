@@ -11,6 +11,7 @@
 #ifdef DSM_HAS_HDF5
 #include "DSMVolumeFiles/format/HdfFile.h"
 #endif
+#include "DSMVolumeFiles/format/NamedVectors.h"
 #include "DSMVolumeFiles/format/ZarrFile.h"
 
 #include <glm/ext/vector_uint3_sized.hpp>
@@ -363,7 +364,7 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
 std::shared_ptr<const VolumeFile> OpenVolumeFile(
   const std::string& path, const OpenOptions& options)
 {
-  auto file = OpenGuarded(path, options);
+  auto file = OfferVectors(OpenGuarded(path, options));
   file->SetPlace(options);
   file->DropRepeatedWarnings();
   CheckGeometry(path, file->GetGeometry());
@@ -374,7 +375,16 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
         ": it has no coarser levels. The only valid level is 0.");
   }
   const std::vector<FileArray>& arrays = file->GetArrays();
-  if (!options.Dataset.empty() && (arrays.size() > 1 || arrays.front().Name != options.Dataset))
+  // A dataset may have several arrays: members of its values, and positions along further axes.
+  const auto isOfDataset = [&](const FileArray& array)
+  {
+    const std::string& wanted = options.Dataset;
+    const bool isPart = array.Name.size() > wanted.size() &&
+      std::string("/ ").find(array.Name[wanted.size()]) != std::string::npos;
+    return array.Name.compare(0, wanted.size(), wanted) == 0 &&
+      (array.Name.size() == wanted.size() || isPart);
+  };
+  if (!options.Dataset.empty() && !std::all_of(arrays.begin(), arrays.end(), isOfDataset))
   {
     throw FileError(path,
       "does not support choosing a dataset ('" + options.Dataset +

@@ -24,8 +24,9 @@ struct FileArray
   std::string Name;
   bricks::ScalarType Type = bricks::ScalarType::UInt8;
   int Components = 1;
-  bool OnCells = false;  ///< else on the points
-  bool IsActive = false; ///< the points' scalars, where the file says so
+  bool OnCells = false;   ///< else on the points
+  bool IsActive = false;  ///< the points' scalars, where the file says so
+  bool IsOffered = false; ///< repeats values of others, so it is used only where it is asked for
   ChunkGrid Grid;
   /// By the array's own attributes. Floating point values that are missing are read as NaN.
   bricks::ValidValues Valid;

@@ -24,8 +24,9 @@ std::vector<std::size_t> FindArrays(const VolumeFile& from, const std::vector<st
   std::vector<std::size_t> found;
   for (std::size_t number = 0; number < from.GetArrays().size(); ++number)
   {
-    const std::string& name = from.GetArrays()[number].Name;
-    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
+    const FileArray& array = from.GetArrays()[number];
+    if (names.empty() ? !array.IsOffered
+                      : std::find(names.begin(), names.end(), array.Name) != names.end())
     {
       found.push_back(number);
     }

@@ -324,16 +324,17 @@ void vtkDSMVolumeReader::Open()
   // The choice for another file applies to arrays of the same names.
   for (const bool onCells : { false, true })
   {
+    vtkDataArraySelection* const selection = onCells ? this->CellArrays : this->PointArrays;
     std::vector<const char*> names;
     for (const vol::FileArray& array : file->GetArrays())
     {
       if (array.OnCells == onCells)
       {
         names.push_back(array.Name.c_str());
+        selection->AddArray(array.Name.c_str(), !array.IsOffered); // where it is new
       }
     }
-    (onCells ? this->CellArrays : this->PointArrays)
-      ->SetArrays(names.data(), static_cast<int>(names.size()));
+    selection->SetArrays(names.data(), static_cast<int>(names.size()));
   }
   this->Self->File = file;
   this->Self->Options = options;
