@@ -95,9 +95,17 @@ source.UpdatePipeline()
 check(source.GetDataInformation().GetBounds() == (5, 99, 6, 123, 7, 147), "ball.nc: where the user places it")
 simple.Delete(source)
 
+# Depths lie where ParaView's own reader has them.
+theirs = simple.NetCDFReader(FileName=[os.path.join(FILES, "ocean.nc")], Dimensions="(deptht, nav_lat, nav_lon)", SphericalCoordinates=0)
+ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ocean.nc"))
+with Messages() as messages:
+    bounds = [source.GetDataInformation().GetBounds() for source in (theirs, ours) if source.UpdatePipeline() is None]
+check(numpy.allclose(*bounds) and bounds[1][5] == -5, f"ocean.nc: as in ParaView's own reader: {bounds}")
+check(messages.text == "", f"ocean.nc: degrees beside meters are ordinary: {messages.text}")
+
 # Values that an attribute declares missing are as NaN: in pictures, in the range, and for the suggested isovalue.
-def show_missing(name, array, isovalue):
-    source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
+def show_missing(name, array, isovalue, in_memory=0):
+    source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name), ValuesInMemory=in_memory)
     display = show(source, view, [isovalue], array)
     place_camera(view)
     pixels = render(view)
@@ -110,12 +118,13 @@ def show_missing(name, array, isovalue):
 
 
 MISSING = (("nan", 0.7, (("missing.h5", "float"), ("missing.h5", "double"), ("missing_float.zarr", "missing_float"))),
-           ("whole nan", 70.5, (("missing.h5", "short"), ("missing.h5", "byte"), ("missing_short.zarr", "missing_short"))))
+           ("whole nan", 70.5, (("missing.h5", "short"), ("missing.h5", "byte"), ("missing_short.zarr", "missing_short"),
+                                ("missing.h5", "ranged"), ("missing.h5", "two"), ("missing.h5", "ranged", 1), ("missing.h5", "two", 1))))
 for reference_name, isovalue, arrays in MISSING:
     expected, range_, suggested = show_missing("missing.h5", reference_name, isovalue)
     check(get_covered(expected).mean() > 0.05, f"{reference_name}: something is shown")
-    for name, array in arrays:
-        traced, found_range, found = show_missing(name, array, isovalue)
+    for name, array, *in_memory in arrays:
+        traced, found_range, found = show_missing(name, array, isovalue, *in_memory)
         check_equal(traced, expected, f"{name}, {array}: as NaN")
         check(numpy.allclose(found_range, range_), f"{name}, {array}: the range of its values: {found_range}, {range_}")
         check(abs(found - suggested) < 1e-3, f"{name}, {array}: the isovalue that NaN suggest: {found}, {suggested}")

@@ -262,6 +262,14 @@ TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
   ExpectRefusal("deflate.h5", options, "no dataset 'f'. Valid datasets: 'deep/er/f', 'other'.");
 }
 
+/// The largest one counts, not the first by name.
+TEST(VolumeFiles, AxesWithoutAMeaningAreNamed)
+{
+  ExpectRefusal("five.h5", {}, "dims[0].label = 'time'");
+  ExpectRefusal("five.h5", {}, "'data' (2 x 3 x 10 x 13 x 21) and 1 more.");
+  ExpectRefusal("letters.h5", {}, "'v' (10 x 13 x 21; 'x', 'y', 'x')");
+}
+
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)
 {
   const Json entry = FindEntry("deflate.h5");

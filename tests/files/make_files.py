@@ -8,7 +8,7 @@ import json
 
 from making.volumes import entries, path
 
-for part in ("hdf", "zarrs", "headers", "balls", "placed"):
+for part in ("hdf", "zarrs", "headers", "balls", "placed", "named"):
     importlib.import_module(f"making.{part}")
 with open(path("manifest.json"), "w", encoding="utf-8") as file:
     json.dump(entries, file, indent=1)

@@ -178,6 +178,13 @@ with h5py.File(path("missing.vtkhdf"), "r") as file:
     coarse = file["DSM/Levels/1/VTKHDF/PointData/short"]
     check(all(one.attrs["_FillValue"][0] == -9999 for one in (file["VTKHDF/PointData/short"], coarse)), "they are declared")
     check(set(np.unique(coarse[...][coarse[...] < 0])) == {-9999}, "and no mean of a coarser level has them")
+done = convert("--quiet", "--arrays", "two", path("missing.h5"), path("two_missing.vtkhdf"))
+with h5py.File(path("two_missing.vtkhdf"), "r") as file:
+    declared = file["VTKHDF/PointData/two"].attrs
+    check([*declared["_FillValue"], *declared["missing_value"]] == [-9999, 8888, -1], "all of several are declared")
+done = convert("--quiet", path("kinds.h5"), path("kinds.vtkhdf"))
+with h5py.File(path("kinds.vtkhdf"), "r") as file:
+    check(len(file["VTKHDF/PointData"]) == 8, f"vectors of arrays that are written are not: {list(file['VTKHDF/PointData'])}")
 done = convert("--quiet", path("uneven.nc"), path("none.vtkhdf"))
 check(done.returncode != 0 and "not evenly spaced" in done.stderr, f"uneven coordinates: {done.stderr.strip()}")
 

@@ -128,10 +128,11 @@ for name, numbers in EVEN.items():
     save_zarr("cf.zarr/" + name, numbers, chunks=(7,))
 attributes = {"": {"_ARRAY_DIMENSIONS": ["lev", "lat", "lon"], "scale_factor": 0.25, "add_offset": 5.0, "_FillValue": 7}}
 attributes.update({name: {"_ARRAY_DIMENSIONS": [name], "units": "degrees"} for name in EVEN})
+attributes["lev"].update({"units": "m", "positive": "Down"})
 for name, told in attributes.items():
     with open(path("cf.zarr/" + (name or "t") + "/.zattrs"), "w", encoding="utf-8") as file:
         json.dump(told, file)
-note("cf.zarr", [("t", "float32")], packing=PACKED, **PLACE)
+note("cf.zarr", [("t", "float32")], packing=PACKED, origin=[10.0, 60.0, -100.0], spacing=[1.0, -0.5, -50.0])
 
 # A group whose first array is still, and has CF's coordinates of two axes; the other one has times.
 zarr.open_group(path("mixed_times.zarr"), mode="w", **LATER)

@@ -23,6 +23,8 @@ DATASETS = {
     "lzf": (EARLIEST, {"data": values(), "chunks": (3, 4, 5), "compression": "lzf"}),
     "half": (EARLIEST, {"data": values("<f2")}),
     "bools": (EARLIEST, {"data": values("|u1") > 50}),
+    "members": (EARLIEST, {"data": np.zeros(SHAPE, [("x", "<f4"), ("text", "S3"), ("y", ">i2")]), "chunks": (2, 3, 2)}),
+    "opaque": (EARLIEST, {"data": np.zeros(SHAPE, "V3")}),
     "single": (LATEST, {"data": values(), "chunks": SHAPE}),
     "fixed_array": (LATEST, {"data": values(), "chunks": (2, 3, 2), "compression": "gzip"}),
     "extensible_array": (LATEST, {"data": values(), "chunks": (2, 3, 2), "maxshape": (None, 4, 5)}),
@@ -53,6 +55,11 @@ def make_plain(folder):
         file["deep/g"].attrs["numbers"] = [1.0, 2.0]
         file["kind"] = np.dtype("<f4")
         file.create_dataset("named", SHAPE, file["kind"])
+    for name, kind in (("labels", {"chunks": (2, 2, 2, 3, 4)}), ("labels_contiguous", {})):
+        with h5py.File(path(folder, "Hdf", name + ".h5"), "w") as file:
+            dataset = file.create_dataset("f", data=values("|u1", (2, *SHAPE, 2)), **kind)
+            for axis, label in enumerate(("c", "z", "y", "x", "t")):
+                dataset.dims[axis].label = label
     with h5py.File(path(folder, "Hdf", "virtual.h5"), "w", libver="latest") as file:
         file["a"] = values()[:3]
         layout = h5py.VirtualLayout(SHAPE, "<f4")

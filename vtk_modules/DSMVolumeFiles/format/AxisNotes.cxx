@@ -63,6 +63,17 @@ std::optional<double> FindMeters(const std::string& unit)
   return std::nullopt;
 }
 
+/// Returns whether a unit is one of those that axes of weather and ocean have beside lengths:
+/// angles, and what CF tells heights by.
+bool IsNoLength(const std::string& unit)
+{
+  static const std::set<std::string> others = { "deg", "radian", "radians", "rad", "pa", "hpa",
+    "kpa", "mbar", "mb", "millibar", "millibars", "bar", "dbar", "decibar", "1", "level", "layer",
+    "sigma_level", "k" };
+  const std::string name = HeaderText::ToLower(unit);
+  return name.rfind("degree", 0) == 0 || others.count(name) > 0;
+}
+
 /// Multiplies positions and distances.
 void Scale(double factor, AxisNote& note)
 {
@@ -85,6 +96,10 @@ void Unify(std::array<AxisNote, 3>& notes, std::vector<std::string>& warnings)
   {
     const auto meters = FindMeters(note.Unit);
     units += (units.empty() ? "" : ", ") + (note.Unit.empty() ? "no unit" : Quote(note.Unit));
+    if (!meters && IsNoLength(note.Unit))
+    {
+      continue;
+    }
     if (!meters)
     {
       unknown.insert(note.Unit);
@@ -147,8 +162,9 @@ std::string AxisNote::GetType() const
 {
   const std::string name = HeaderText::ToLower(this->Name);
   const std::string type = HeaderText::ToLower(this->Type);
+  const bool isSince = HeaderText::ToLower(this->Unit).find(" since ") != std::string::npos;
   return !type.empty()                          ? type
-    : name == "t" || name == "time"             ? "time"
+    : name == "t" || name == "time" || isSince  ? "time"
     : name == "c" || name == "channel"          ? "channel"
     : name == "x" || name == "y" || name == "z" ? "space"
                                                 : "";
@@ -160,7 +176,19 @@ std::optional<int> AxisNote::FindSpaceAxis() const
     { "easting", 0 }, { "y", 1 }, { "lat", 1 }, { "latitude", 1 }, { "northing", 1 }, { "z", 2 },
     { "lev", 2 }, { "level", 2 }, { "plev", 2 }, { "depth", 2 }, { "altitude", 2 } };
   const auto known = names.find(HeaderText::ToLower(this->Name));
-  return known == names.end() ? std::nullopt : std::optional<int>(known->second);
+  if (known != names.end())
+  {
+    return known->second;
+  }
+  // degree_east, degrees_E, degreesE and so on.
+  const std::string unit = HeaderText::ToLower(this->Unit);
+  const std::size_t side = unit.rfind("degree", 0) == 0
+    ? unit.find_first_not_of("s_", std::char_traits<char>::length("degree"))
+    : std::string::npos;
+  return side == std::string::npos ? std::nullopt
+    : unit[side] == 'e'            ? std::optional<int>(0)
+    : unit[side] == 'n'            ? std::optional<int>(1)
+                                   : std::nullopt;
 }
 
 std::optional<SpaceOrder> FindSpaceOrder(const AxisNotes& notes, std::size_t first)
@@ -232,15 +260,18 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
 }
 
 void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute)>& getNumbers,
-  AxisNotes& notes, std::size_t first)
+  AxisNotes& notes, const std::array<std::optional<std::size_t>, 3>& inSpace)
 {
+  if (!inSpace[0])
+  {
+    return;
+  }
   const auto find = [&](const char* name)
   {
     std::vector<double> numbers = getNumbers(name);
     if (numbers.size() == notes.size())
     {
-      numbers = { numbers.begin() + static_cast<std::ptrdiff_t>(first),
-        numbers.begin() + static_cast<std::ptrdiff_t>(first + 3) };
+      numbers = { numbers[*inSpace[0]], numbers[*inSpace[1]], numbers[*inSpace[2]] };
     }
     const bool isRight = numbers.size() == 3 &&
       std::all_of(
@@ -255,11 +286,23 @@ void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute
       const std::vector<double> offsets = find("offset");
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        notes[first + axis].Spacing = sizes[axis];
-        notes[first + axis].Origin = offsets.empty() ? 0.0 : offsets[axis];
+        notes[*inSpace[axis]].Spacing = sizes[axis];
+        notes[*inSpace[axis]].Origin = offsets.empty() ? 0.0 : offsets[axis];
       }
       return;
     }
+  }
+}
+
+void TakeUpDown(const std::string& positive, AxisNote& note)
+{
+  if (!positive.empty() && note.FindSpaceAxis() != 2)
+  {
+    note.Name = "Z";
+  }
+  if (HeaderText::ToLower(positive) == "down")
+  {
+    Scale(-1.0, note);
   }
 }
 

@@ -27,9 +27,12 @@ struct AxisNote
   /// Positions of the samples, instead of these; empty: none.
   std::vector<double> Coordinates;
 
-  /// Returns the type that is told, or that the name tells ("t", "time", "c", "channel", "x", "lat" ...).
+  /// Returns the type that is told, or that name or unit tell ("t", "time", "days since ...", "c",
+  /// "channel", "x" ...).
   std::string GetType() const;
-  /// Returns 0, 1 or 2 where the name is one of x, y or z, or one of their names on the earth ("lon", "lat", "depth" ...).
+  /// Returns 0, 1 or 2 where the name is one of x, y or z, or one of their names on the earth
+  /// ("lon", "lat", "depth" ...), or the unit is one of CF's for longitudes and latitudes
+  /// ("degrees_east" ...).
   std::optional<int> FindSpaceAxis() const;
 };
 using AxisNotes = std::vector<AxisNote>; ///< the slowest axis first
@@ -47,9 +50,13 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
 
 /// Takes voxel sizes and offsets of axes of space from an array's attributes, as ilastik, Fiji (element_size_um), funlib and
 /// CREMI (voxel_size or resolution, offset) write them: one number for each of these axes, or for each axis, the slowest
-/// first. `first`: which of the notes is the first of three in space.
+/// first. `inSpace`: which of the notes are those of three axes in space.
 void TakeVoxelSize(const std::function<std::vector<double>(const char* attribute)>& getNumbers,
-  AxisNotes& notes, std::size_t first);
+  AxisNotes& notes, const std::array<std::optional<std::size_t>, 3>& inSpace);
+
+/// Takes CF's attribute "positive" of a coordinate variable, if it has it: the axis is z, and
+/// positions that count downward change their sign, as in ParaView's own reader.
+void TakeUpDown(const std::string& positive, AxisNote& note);
 
 /// Adds a sentence to `warnings` for each of CF's attributes of places that are not along the axes of an array: "coordinates" of
 /// two and more axes, and "grid_mapping" of a projection. `getText(attribute)`: of the array, short; empty: none. `countAxes(name)`:

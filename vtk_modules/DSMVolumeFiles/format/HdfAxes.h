@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,17 +22,24 @@ std::vector<hsize_t> GetHdfShape(hid_t dataset);
 /// For messages: "1 x 40 x 48 x 56".
 std::string DescribeHdfShape(const std::vector<hsize_t>& shape);
 
-/// The axes of an HDF5 dataset that holds a volume, the slowest first: any of length 1, of which one may be time instead;
-/// three in space; maybe one of components.
+/// The axes of an HDF5 dataset that holds a volume, the slowest first: three in space, or two where
+/// a name says that another one is time or channels; maybe one of time; maybe one of components
+/// behind those in space. Each position along further axes is a volume of its own.
 struct HdfAxes
 {
-  std::size_t Rank = 0;
+  std::vector<hsize_t> Lengths;
   std::optional<std::size_t> Time; ///< which one
-  std::size_t Space = 0;           ///< the first one in space
-  SpaceOrder Order = FastestX;
+  /// Which ones are in space, the slowest first. Where there are two, the first is none: it would
+  /// have one sample.
+  std::array<std::optional<std::size_t>, 3> Space;
+  SpaceOrder Order = FastestX; ///< of these
+  std::optional<std::size_t> Component;
+  std::vector<std::size_t> Further; ///< of more than one position
+  std::vector<hsize_t> Place;       ///< of the volume along the further axes; 0 along all others
+
   hsize_t Frames = 0; ///< along the axis of time; 0: it has none
   bricks::Index3 Samples{ 0 };
-  hsize_t Components = 0; ///< along a last axis; 0: it has none
+  hsize_t Components = 0; ///< 0: it has no axis of them
 
   VolumeShape GetShape() const
   {
@@ -39,7 +47,7 @@ struct HdfAxes
   }
   enum class Kind
   {
-    Unknown, ///< where names tell nothing, a short last axis of four or more has components
+    Unknown, ///< as FindByNames does
     Still,   ///< of four axes the last one has components
     InTime   ///< the first one is time
   };
@@ -52,10 +60,36 @@ struct HdfAxes
   [[noreturn]] static void RefuseLength(
     const std::string& path, const std::string& dataset, const std::string& tooLong);
 
+  /// The volumes at each position along the further axes, the last axis fastest.
+  std::vector<HdfAxes> Split() const;
+
   /// Samples of a box of chunks of so many samples along each axis of the dataset.
   bricks::Index3 GetSpace(const std::vector<hsize_t>& edges) const;
-  /// Boxes of samples in such a chunk, of the axes before those in space.
+  /// Boxes of samples in such a chunk, of the axes of time and further ones.
   hsize_t CountSlices(const std::vector<hsize_t>& edges) const;
+  /// Which one of these has the volume at a frame.
+  hsize_t FindSlice(const std::vector<hsize_t>& edges, hsize_t frame) const;
+  /// The number of a chunk, along all axes of which the last one is the fastest. `chunk`: in space.
+  std::uint64_t FindChunk(
+    const std::vector<hsize_t>& edges, hsize_t frame, const bricks::Index3& chunk) const;
+  /// Returns whether the samples of such a box lie together: the axes in space are behind all
+  /// others but the components'.
+  bool IsTogether() const;
+  /// Returns whether a chunk at a place, in chunks along each axis, has samples of the volume at
+  /// any frame.
+  bool Has(const std::uint64_t* place, const std::vector<hsize_t>& edges) const;
+
+private:
+  /// Axes have the meaning of their names. Without names, the last three are in space: of four and
+  /// more axes, the last one has components where it is short, and one of the others, with more
+  /// than one position, is time.
+  bool FindByNames(const AxisNotes& notes);
+  bool FindInOrder(Kind kind);
+  bool IsInSpace(std::size_t axis) const;
+  hsize_t GetPlace(std::size_t axis, hsize_t frame) const
+  {
+    return axis == this->Time ? frame : this->Place[axis];
+  }
 };
 
 } // namespace vol

@@ -67,7 +67,7 @@ std::vector<hsize_t> GetHdfChunkEdges(
 }
 
 haddr_t FindHdfValuesPlace(
-  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames)
+  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t slices)
 {
   // With a block of the user's own before all, the library (1.10) adds its size to an undefined place, too.
   H5D_space_status_t status = H5D_SPACE_STATUS_NOT_ALLOCATED;
@@ -80,8 +80,7 @@ haddr_t FindHdfValuesPlace(
   const std::uint64_t has = file.GetBytes();
   const auto samples =
     static_cast<std::uint64_t>(bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount());
-  const auto needed =
-    MultiplyWithin(has, { samples, array.GetSampleBytes(), std::max<std::uint64_t>(1, frames) });
+  const auto needed = MultiplyWithin(has, { samples, array.GetSampleBytes(), slices });
   if (first > has || !needed || *needed > has - first)
   {
     throw FileError(file.GetPath(),
@@ -105,7 +104,8 @@ void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& 
 }
 
 std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
-  const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn)
+  const std::string& name, const std::vector<hsize_t>& edges, const HdfAxes& axes,
+  const std::function<bool()>& goesOn)
 {
   const haddr_t header = IsPlain(dataset) ? FindHeader(&H5Oget_info2, dataset) : HADDR_UNDEF;
   const std::optional<HdfChunkLayout> layout =
@@ -164,7 +164,10 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
           }
           number = number * counts[axis] + place[axis];
         }
-        table.Add(number, chunk);
+        if (axes.Has(place, edges))
+        {
+          table.Add(number, chunk);
+        }
         isStopped = table.GetCount() % oftenEnough == 0 && goesOn && !goesOn();
         if (table.GetCount() > FileLimits::Chunks)
         {

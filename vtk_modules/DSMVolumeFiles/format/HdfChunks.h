@@ -2,6 +2,7 @@
 #ifndef vol_HdfChunks_h
 #define vol_HdfChunks_h
 
+#include "DSMVolumeFiles/format/HdfAxes.h"
 #include "DSMVolumeFiles/format/HdfChunkTable.h"
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
@@ -21,21 +22,23 @@ namespace vol
 std::vector<hsize_t> GetHdfChunkEdges(
   hid_t dataset, const std::string& path, const std::string& name);
 
-/// Returns the offset of the values of a contiguous dataset; HADDR_UNDEF if none have been written. `frames`:
-/// number of time steps along its time axis, 0 if it has none. Throws dsm::Error if the file ends before the values
-/// do.
+/// Returns the offset of the values of a contiguous dataset; HADDR_UNDEF if none have been written.
+/// `slices`: boxes of samples along its axes that are not in space. Throws dsm::Error if the file
+/// ends before the values do.
 haddr_t FindHdfValuesPlace(
-  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t frames);
+  hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t slices);
 
 /// Throws dsm::Error where a dataset whose values are in its header has fewer of them than its shape says: the library
 /// would read beyond them.
 void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name);
 
-/// Reads the places of the chunks of a dataset. Returns nothing if the file has an index of another kind, or
-/// addresses of another size: then only the library can read the values. Throws dsm::Error if the index is damaged,
-/// or if `goesOn`, which is called now and then, returns false.
+/// Reads the places of the chunks of a dataset that have samples of a volume with these axes.
+/// Returns nothing if the file has an index of another kind, or addresses of another size: then
+/// only the library can read the values. Throws dsm::Error if the index is damaged, or if `goesOn`,
+/// which is called now and then, returns false.
 std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& file,
-  const std::string& name, const std::vector<hsize_t>& edges, const std::function<bool()>& goesOn);
+  const std::string& name, const std::vector<hsize_t>& edges, const HdfAxes& axes,
+  const std::function<bool()>& goesOn);
 
 } // namespace vol
 

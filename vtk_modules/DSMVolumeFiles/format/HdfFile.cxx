@@ -55,7 +55,7 @@ public:
     }
     if (this->Arrays.empty())
     {
-      throw FileError(path, "has no " + this->Missing);
+      throw FileError(path, this->Unread.empty() ? "has no " + this->Missing : this->Unread);
     }
     this->GoesOn = nullptr; // whoever opens the file may be gone later
     // Results kept for one level must not be used for another.
@@ -157,27 +157,21 @@ protected:
       const bricks::Box box = grid.GetBox(chunk);
       const auto before =
         static_cast<std::uint64_t>((box.Min.z * grid.Samples.y + box.Min.y) * grid.Samples.x);
+      const std::uint64_t slice = axes.FindSlice(axes.Lengths, frame);
       const std::size_t bytes = this->GetStoredBytes(array);
-      const auto frameSamples =
+      const auto sliceSamples =
         static_cast<std::uint64_t>(grid.Samples.x * grid.Samples.y * grid.Samples.z);
-      return Place{ this->Bytes, dataset.First + (frame * frameSamples + before) * bytes,
+      return Place{ this->Bytes, dataset.First + (slice * sliceSamples + before) * bytes,
         static_cast<std::size_t>(box.GetCount()) * bytes, 0 };
     }
-    const std::size_t times = dataset.ChunkTimes;
-    const bricks::Index3 counts = grid.GetCounts();
-    std::uint64_t number = frame / times;
-    for (const int axis : axes.Order)
-    {
-      number =
-        number * static_cast<std::uint64_t>(counts[axis]) + static_cast<std::uint64_t>(chunk[axis]);
-    }
-    const HdfChunk* const stored = dataset.Chunks->Find(number);
+    const HdfChunk* const stored =
+      dataset.Chunks->Find(axes.FindChunk(dataset.Edges, frame, chunk));
     if (!stored)
     {
       return std::nullopt;
     }
     return Place{ this->Bytes, stored->First, stored->Bytes, stored->SkippedFilters,
-      frame % times };
+      static_cast<std::size_t>(axes.FindSlice(dataset.Edges, frame)) };
   }
 
   bool IsMissing(std::size_t array, int step, const bricks::Index3& chunk) const override
@@ -334,7 +328,7 @@ private:
       {
         const std::string offsets = std::string("Steps/") + name + "Offsets/" + link;
         std::optional<HdfLayout> layout =
-          this->FindLayout(std::move(dataset), link, onCells, found);
+          this->FindLayout(std::move(dataset), link, {}, onCells, found);
         if (layout)
         {
           layout->Origin.Frames = this->FindFrames(parent, offsets, found);
@@ -414,7 +408,7 @@ private:
   bool LocateBy(const HdfVolume& volume)
   {
     this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
-    if (volume.Notes.size() != volume.Axes.Rank)
+    if (volume.Notes.size() != volume.Axes.Lengths.size())
     {
       return true;
     }
@@ -425,7 +419,7 @@ private:
     for (std::size_t axis = 0; axis < inSpace.size(); ++axis)
     {
       inSpace[static_cast<std::size_t>(volume.Axes.Order[axis])] =
-        &volume.Notes[volume.Axes.Space + axis];
+        volume.Axes.Space[axis] ? &volume.Notes[*volume.Axes.Space[axis]] : nullptr;
     }
     std::vector<std::string> warnings;
     if (this->IsPlaced)
@@ -446,12 +440,16 @@ private:
     return true;
   }
 
-  std::optional<HdfLayout> FindLayout(
-    HdfHandle dataset, const std::string& name, bool onCells, const HdfAxes& axes)
+  std::optional<HdfLayout> FindLayout(HdfHandle dataset, const std::string& name,
+    const std::string& member, bool onCells, const HdfAxes& axes)
   {
-    return HdfLayout::Find({ this->Path, this->File.Get(), this->Root, *this->Bytes, this->Grows,
-                             this->GoesOn, this->Origins, this->Warnings },
-      std::move(dataset), name, onCells, axes);
+    const std::size_t warnings = this->Warnings.size();
+    auto layout = HdfLayout::Find({ this->Path, this->File.Get(), this->Root, *this->Bytes,
+                                    this->Grows, this->GoesOn, this->Origins, this->Warnings },
+      std::move(dataset), name, member, onCells, axes);
+    const bool isUnread = !layout && this->Warnings.size() > warnings;
+    this->Unread = isUnread ? this->Warnings.back() : this->Unread;
+    return layout;
   }
 
   void Add(HdfLayout layout)
@@ -467,7 +465,7 @@ private:
     const auto find = [&](const std::string& dataset)
     {
       return this->FindLayout(
-        OpenHdfDataset(this->File.Get(), dataset), volume.Name, false, volume.Axes);
+        OpenHdfDataset(this->File.Get(), dataset), volume.Name, volume.Member, false, volume.Axes);
     };
     std::optional<HdfLayout> first = find(volume.Datasets.front());
     std::vector<HdfDataset> others;
@@ -507,8 +505,8 @@ private:
     const FileArray& array = this->Arrays[number];
     const HdfDataset& kept = this->GetDataset(number, step);
     const hid_t dataset = kept.Id.Get();
-    const bool isRead = ReadHdfBox(
-      dataset, kept.Type, kept.Shape, kept.GetFrame(step), array.Grid.GetBox(chunk), out);
+    const bool isRead = ReadHdfBox(dataset, kept.Type, kept.Member, kept.Shape, kept.GetFrame(step),
+      array.Grid.GetBox(chunk), out);
     if (!this->Grows)
     {
       this->Bytes->CheckUnchanged();
@@ -533,6 +531,7 @@ private:
   hid_t Root = H5I_INVALID_HID;              ///< of the level: that group, or the file
   std::vector<std::vector<HdfDataset>> Kept; ///< of each array: one for all steps, or one for each
   std::string Missing;                       ///< what a file without arrays lacks
+  std::string Unread; ///< a warning of an array that cannot be read; empty: there is none
 };
 
 } // namespace

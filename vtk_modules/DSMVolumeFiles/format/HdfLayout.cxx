@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileError.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
 #include "DSMVolumeFiles/format/BareFile.h"
 #include "DSMVolumeFiles/format/HdfBrickIndex.h"
@@ -25,6 +26,14 @@ PackedValues FindPacking(hid_t dataset, bricks::ScalarType stored, const std::st
   packed.TakeAttributes([&](const char* attribute) { return ReadHdfNumbers(dataset, attribute); },
     ReadHdfText(dataset, "_Unsigned") == "true", name, warnings);
   return packed;
+}
+
+/// Returns whether the library can read the first sample.
+bool CanRead(const HdfDataset& dataset, const FileArray& array)
+{
+  std::vector<std::byte> sample(array.GetSampleBytes());
+  return ReadHdfBox(dataset.Id.Get(), dataset.Type, dataset.Member, dataset.Shape, 0,
+    { bricks::Index3(0), bricks::Index3(1) }, sample.data());
 }
 
 ChunkCodec CreateCodec(
@@ -70,7 +79,8 @@ void FindHalo(hid_t root, const FileArray& array, ChunkStorage& storage)
   }
 }
 
-/// False when the chunks do not have all components, or are not where the library says, or as the filters say.
+/// False when the chunks do not have all components, or are not where the library says, or as the
+/// filters say, or have samples in another order than bricks.
 bool FindChunks(const HdfLayout::Place& place, const std::vector<hsize_t>& edges, hid_t properties,
   const FileArray& array, ChunkStorage& storage, HdfDataset& dataset, bool swapped)
 {
@@ -83,14 +93,15 @@ bool FindChunks(const HdfLayout::Place& place, const std::vector<hsize_t>& edges
     return false;
   }
   const HdfAxes& axes = dataset.Shape;
-  // A chunk may have several times.
+  // A chunk may have several times, and positions along further axes.
   const hsize_t slices = axes.CountSlices(edges);
   CheckSizes(place.Path, array, slices);
   storage.Slices = static_cast<std::size_t>(slices);
-  dataset.ChunkTimes = axes.Time ? static_cast<std::size_t>(edges[*axes.Time]) : 1;
-  dataset.Chunks = FindHdfChunks(dataset.Id.Get(), place.Bytes, array.Name, edges, place.GoesOn);
-  const bool areWhole = axes.Components == 0 || edges.back() == axes.Components;
-  if (!areWhole || dataset.ChunkTimes != slices)
+  dataset.Edges = edges;
+  dataset.Chunks =
+    FindHdfChunks(dataset.Id.Get(), place.Bytes, array.Name, edges, axes, place.GoesOn);
+  const bool areWhole = !axes.Component || edges[*axes.Component] == axes.Components;
+  if (!areWhole || !axes.IsTogether())
   {
     dataset.Chunks.reset();
   }
@@ -103,14 +114,14 @@ bool FindChunks(const HdfLayout::Place& place, const std::vector<hsize_t>& edges
 
 } // namespace
 
-std::optional<HdfLayout> HdfLayout::Find(
-  const Place& place, HdfHandle id, const std::string& name, bool onCells, const HdfAxes& axes)
+std::optional<HdfLayout> HdfLayout::Find(const Place& place, HdfHandle id, const std::string& name,
+  const std::string& member, bool onCells, const HdfAxes& axes)
 {
   FileArray array;
   array.Name = name;
   array.OnCells = onCells;
   array.Components = static_cast<int>(std::max<hsize_t>(1, axes.Components));
-  const std::optional<HdfValues> values = FindHdfValues(id.Get());
+  const std::optional<HdfValues> values = FindHdfValues(id.Get(), member);
   if (!values)
   {
     return std::nullopt;
@@ -122,12 +133,12 @@ std::optional<HdfLayout> HdfLayout::Find(
   CheckSizes(place.Path, array);
   // The library alone knows the chunks of a file that grows.
   const bool isElsewhere = place.Origins.Add(place.Path, place.File, id.Get()) || place.Grows;
-  const bool isOrdered = axes.Order == FastestX;
+  const bool isOrdered = axes.Order == FastestX && axes.IsTogether();
   const auto cut = isOrdered ? &CutIntoRows : &CutIntoBoxes;
   array.Grid = cut(axes.Samples, array.GetSampleBytes());
   storage.Order = axes.Order;
   HdfDataset dataset{ std::move(id), values->Type, !values->IsPlain || isElsewhere, HADDR_UNDEF,
-    std::nullopt, 1, axes, {} };
+    std::nullopt, {}, axes, member, {} };
   storage.Fill = GetHdfFill(dataset.Id.Get(), array.Type, array.Components);
   const HdfHandle properties(H5Dget_create_plist(dataset.Id.Get()), &H5Pclose);
   std::vector<CodecStep> steps;
@@ -140,7 +151,7 @@ std::optional<HdfLayout> HdfLayout::Find(
     case H5D_CONTIGUOUS:
       dataset.First = dataset.ReadByLibrary
         ? HADDR_UNDEF
-        : FindHdfValuesPlace(dataset.Id.Get(), place.Bytes, array, axes.Frames);
+        : FindHdfValuesPlace(dataset.Id.Get(), place.Bytes, array, axes.CountSlices(axes.Lengths));
       dataset.ReadByLibrary = dataset.ReadByLibrary || !isOrdered;
       storage.HasWholeChunks = false;
       break;
@@ -167,6 +178,12 @@ std::optional<HdfLayout> HdfLayout::Find(
       break;
     default:
       dataset.ReadByLibrary = true;
+  }
+  const std::string lack = dataset.ReadByLibrary ? FindLackingHdfFilter(dataset.Id.Get()) : "";
+  if (!lack.empty() && !CanRead(dataset, array))
+  {
+    place.Warnings.push_back("has array " + Quote(name) + ", which is not shown: " + lack);
+    return std::nullopt;
   }
   if (!dataset.ReadByLibrary)
   {

@@ -28,8 +28,9 @@ struct HdfDataset
   bool ReadByLibrary = false;
   haddr_t First = HADDR_UNDEF;         ///< of contiguous values
   std::optional<HdfChunkTable> Chunks; ///< chunks of all times; none where values are contiguous
-  std::size_t ChunkTimes = 1;          ///< in a chunk
+  std::vector<hsize_t> Edges;          ///< of a chunk, along all axes
   HdfAxes Shape;
+  std::string Member; ///< see HdfValues
   std::vector<int>
     Frames; ///< position of each step along the time axis; empty: each step has its own chunks
 
@@ -63,9 +64,11 @@ struct HdfLayout
     std::vector<std::string>& Warnings; ///< of attributes that are not honored
   };
 
-  /// Returns nothing where the dataset has no numbers. Throws dsm::Error, which names the file. The caller has GetHdfLock.
+  /// `member`: see HdfValues. Returns nothing where the dataset has no numbers, or a filter is
+  /// missing that its first sample needs; then a sentence in the warnings says so. Throws
+  /// dsm::Error, which names the file. The caller has GetHdfLock.
   static std::optional<HdfLayout> Find(const Place& place, HdfHandle dataset,
-    const std::string& name, bool onCells, const HdfAxes& axes);
+    const std::string& name, const std::string& member, bool onCells, const HdfAxes& axes);
 
   /// Returns whether equal numbers in both mean equal values.
   bool HasSameValues(const HdfLayout& other) const;

@@ -99,13 +99,15 @@ std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll)
   return std::move(visit.Names);
 }
 
-std::string ListHdfNames(const std::vector<std::string>& names)
+std::string ListHdfNames(
+  const std::vector<std::string>& names, const std::vector<std::string>& notes)
 {
   constexpr std::size_t most = 10;
   std::string list = names.empty() ? "none" : "";
   for (std::size_t index = 0; index < std::min(most, names.size()); ++index)
   {
     list += (index > 0 ? ", '" : "'") + names[index] + "'";
+    list += notes.empty() ? "" : " (" + notes[index] + ")";
   }
   return list +
     (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");

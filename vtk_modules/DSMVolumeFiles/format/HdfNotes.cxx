@@ -172,6 +172,7 @@ AxisNotes ReadScales(hid_t file, hid_t dataset, const std::vector<hsize_t>& shap
       note.Unit = ReadHdfText(scale.Get(), "units");
       const std::string letter = ReadHdfText(scale.Get(), "axis"); // CF: X, Y, Z or T
       note.Name = letter.size() == 1 ? letter : note.Name;
+      TakeUpDown(ReadHdfText(scale.Get(), "positive"), note);
     }
     notes.push_back(std::move(note));
   }

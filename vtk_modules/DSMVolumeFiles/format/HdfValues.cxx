@@ -12,6 +12,26 @@ namespace vol
 namespace
 {
 
+std::string GetMemberName(hid_t type, unsigned member)
+{
+  char* const read = H5Tget_member_name(type, member);
+  std::string name(read ? read : "");
+  H5free_memory(read);
+  return name.size() > FileLimits::NameBytes ? std::string() : name;
+}
+
+/// A type of the machine's numbers, or of a compound that has nothing but such a member.
+HdfHandle MakeMemoryType(bricks::ScalarType type, const std::string& member)
+{
+  if (member.empty())
+  {
+    return { H5Tcopy(GetHdfType(type)), &H5Tclose };
+  }
+  HdfHandle compound(H5Tcreate(H5T_COMPOUND, bricks::GetBytes(type)), &H5Tclose);
+  H5Tinsert(compound.Get(), member.c_str(), 0, GetHdfType(type));
+  return compound;
+}
+
 std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
 {
   using Type = bricks::ScalarType;
@@ -54,14 +74,79 @@ std::optional<HdfValues> FindValuesOfType(const HdfHandle& stored)
 
 } // namespace
 
-std::optional<HdfValues> FindHdfValues(hid_t dataset)
+std::vector<HdfValues> FindHdfValues(hid_t dataset)
 {
-  HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
-  if (H5Tget_class(stored.Get()) == H5T_ENUM)
+  std::vector<HdfValues> found;
+  const HdfHandle stored(H5Dget_type(dataset), &H5Tclose);
+  const auto add = [&](const HdfHandle& type, const std::string& member)
   {
-    return FindValuesOfType(HdfHandle(H5Tget_super(stored.Get()), &H5Tclose));
+    const bool isEnum = H5Tget_class(type.Get()) == H5T_ENUM;
+    auto values = isEnum ? FindValuesOfType(HdfHandle(H5Tget_super(type.Get()), &H5Tclose))
+                         : FindValuesOfType(type);
+    if (values)
+    {
+      values->Member = member;
+      values->IsPlain = values->IsPlain && member.empty();
+      found.push_back(std::move(*values));
+    }
+  };
+  if (H5Tget_class(stored.Get()) != H5T_COMPOUND)
+  {
+    add(stored, {});
+    return found;
   }
-  return FindValuesOfType(stored);
+  const int count = H5Tget_nmembers(stored.Get());
+  for (int number = 0; number < count; ++number)
+  {
+    const auto member = static_cast<unsigned>(number);
+    const std::string name = GetMemberName(stored.Get(), member);
+    const HdfHandle type(H5Tget_member_type(stored.Get(), member), &H5Tclose);
+    const std::size_t first = H5Tget_member_offset(stored.Get(), member);
+    const std::size_t bytes = H5Tget_size(stored.Get());
+    if (!name.empty() && type.IsOpen() && first <= bytes &&
+      H5Tget_size(type.Get()) <= bytes - first)
+    {
+      add(type, name);
+    }
+  }
+  return found;
+}
+
+std::optional<HdfValues> FindHdfValues(hid_t dataset, const std::string& member)
+{
+  std::vector<HdfValues> all = FindHdfValues(dataset);
+  const auto found = std::find_if(
+    all.begin(), all.end(), [&](const HdfValues& one) { return one.Member == member; });
+  return found == all.end() ? std::nullopt : std::optional<HdfValues>(std::move(*found));
+}
+
+std::string DescribeHdfType(hid_t dataset)
+{
+  const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
+  const std::string bytes = std::to_string(H5Tget_size(type.Get())) + " bytes";
+  switch (H5Tget_class(type.Get()))
+  {
+    case H5T_INTEGER:
+      return "integers, " + bytes;
+    case H5T_FLOAT:
+      return "floating point, " + bytes;
+    case H5T_STRING:
+      return "text";
+    case H5T_OPAQUE:
+      return "opaque, " + bytes;
+    case H5T_COMPOUND:
+      return "compound without numbers";
+    case H5T_REFERENCE:
+      return "references";
+    case H5T_VLEN:
+      return "lists of any length";
+    case H5T_ARRAY:
+      return "arrays";
+    case H5T_BITFIELD:
+      return "bit fields";
+    default:
+      return "of a type that this HDF5 library does not know";
+  }
 }
 
 std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components)
@@ -81,23 +166,29 @@ std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int co
   return all;
 }
 
-bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, const HdfAxes& axes, std::size_t frame,
-  const bricks::Box& box, std::byte* out)
+bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, const std::string& member,
+  const HdfAxes& axes, std::size_t frame, const bricks::Box& box, std::byte* out)
 {
   const bricks::Index3 size = box.GetSize();
   const hsize_t components = std::max<hsize_t>(1, axes.Components);
-  std::vector<hsize_t> first(axes.Rank, 0);
-  std::vector<hsize_t> count(axes.Rank, 1);
+  std::vector<hsize_t> first = axes.Place;
+  std::vector<hsize_t> count(first.size(), 1);
   for (std::size_t place = 0; place < axes.Order.size(); ++place)
   {
-    first[axes.Space + place] = static_cast<hsize_t>(box.Min[axes.Order[place]]);
-    count[axes.Space + place] = static_cast<hsize_t>(size[axes.Order[place]]);
+    if (axes.Space[place])
+    {
+      first[*axes.Space[place]] = static_cast<hsize_t>(box.Min[axes.Order[place]]);
+      count[*axes.Space[place]] = static_cast<hsize_t>(size[axes.Order[place]]);
+    }
   }
   if (axes.Time)
   {
     first[*axes.Time] = frame;
   }
-  count.back() = axes.Components > 0 ? components : count.back();
+  if (axes.Component)
+  {
+    count[*axes.Component] = components;
+  }
   const std::size_t sampleBytes = bricks::GetBytes(type) * static_cast<std::size_t>(components);
   const std::size_t bytes = static_cast<std::size_t>(box.GetCount()) * sampleBytes;
   ByteBuffer ordered(axes.Order != FastestX ? bytes : 0);
@@ -105,10 +196,11 @@ bool ReadHdfBox(hid_t dataset, bricks::ScalarType type, const HdfAxes& axes, std
   std::fill_n(to, bytes, std::byte(0));
   const HdfHandle all(H5Dget_space(dataset), &H5Sclose);
   const HdfHandle part(
-    H5Screate_simple(static_cast<int>(axes.Rank), count.data(), nullptr), &H5Sclose);
+    H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), &H5Sclose);
+  const HdfHandle inMemory = MakeMemoryType(type, member);
   const bool isRead = H5Sselect_hyperslab(all.Get(), H5S_SELECT_SET, first.data(), nullptr,
                         count.data(), nullptr) >= 0 &&
-    H5Dread(dataset, GetHdfType(type), part.Get(), all.Get(), H5P_DEFAULT, to) >= 0;
+    H5Dread(dataset, inMemory.Get(), part.Get(), all.Get(), H5P_DEFAULT, to) >= 0;
   if (!ordered.empty())
   {
     CopyOrdered(to, size, axes.Order, out, size, sampleBytes);

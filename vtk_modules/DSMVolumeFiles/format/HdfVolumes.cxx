@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/format/HdfVolumes.h"
 
+#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
 #include "DSMVolumeFiles/format/OpenPmdSteps.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 namespace vol
@@ -19,10 +22,32 @@ namespace
 /// Datasets that make no volume, for messages.
 struct OtherDatasets
 {
-  std::vector<std::string> OfNumbers; ///< with their shapes
-  std::vector<std::string> Closed;    ///< names of those that cannot be opened
+  std::map<hsize_t, std::string> OfNumbers; ///< with their axes, by the number of values
+  std::size_t CountOfNumbers = 0;
+  std::vector<std::string> OfTypes; ///< names of those of three axes and more, and their types
+  std::vector<std::string> Types;
+  std::vector<std::string> Closed; ///< names of those that cannot be opened
   bool AreAll = true; ///< else an object cannot be read, and those after it are not known
 
+  void Add(const std::string& name, const std::vector<hsize_t>& shape, const AxisNotes& notes)
+  {
+    hsize_t count = 1;
+    for (const hsize_t length : shape)
+    {
+      count =
+        MultiplyWithin(FileLimits::ArrayBytes, { count, length }).value_or(FileLimits::ArrayBytes);
+    }
+    std::string names;
+    for (const AxisNote& note : notes)
+    {
+      names += (names.empty() ? "" : ", ") + (note.Name.empty() ? "no name" : Quote(note.Name));
+    }
+    const bool areNamed = std::any_of(
+      notes.begin(), notes.end(), [](const AxisNote& note) { return !note.Name.empty(); });
+    this->OfNumbers.try_emplace(
+      count, "'" + name + "' (" + DescribeHdfShape(shape) + (areNamed ? "; " + names : "") + ")");
+    ++this->CountOfNumbers;
+  }
   /// What is wrong with the file; empty: nothing.
   std::string DescribeDamage() const
   {
@@ -34,19 +59,33 @@ struct OtherDatasets
                         : "an object that cannot be read, so that the file is damaged. Datasets "
                           "after it are not shown.";
   }
+  /// Likewise, what is not shown.
+  std::string DescribeTypes() const
+  {
+    return this->OfTypes.empty() ? std::string()
+                                 : "datasets that are not shown because their values are not "
+                                   "numbers. Write them as numbers: " +
+        ListHdfNames(this->OfTypes, this->Types);
+  }
 
   /// As HdfVolumes::Missing.
   std::string DescribeMissing(hid_t file, const std::string& wanted) const
   {
     const auto& others = this->OfNumbers;
     const std::string damage = this->DescribeDamage();
+    const std::string types = this->DescribeTypes();
     const std::string shapes = (damage.empty() ? std::string() : " It has " + damage) +
+      (types.empty() ? std::string() : " It has " + types) +
       (others.empty()
           ? std::string()
           : " A volume has numbers along three axes (z, y, x). It may have a first axis of time "
-            "steps, others of length 1, and a last axis of components. Datasets of numbers: " +
-            others.front() +
-            (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more." : "."));
+            "steps, others of length 1, and a last axis of components. Further axes need names: "
+            "in h5py, for example, dataset.dims[0].label = 'time', and 'c', 'z', 'y', 'x' of the "
+            "others. Datasets of numbers: " +
+            others.rbegin()->second +
+            (this->CountOfNumbers > 1
+                ? " and " + std::to_string(this->CountOfNumbers - 1) + " more."
+                : "."));
     if (wanted.empty())
     {
       return "numeric dataset with three axes." + shapes;
@@ -56,6 +95,25 @@ struct OtherDatasets
       : "dataset '" + wanted + "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(file));
   }
 };
+
+/// Adds a volume for each member of a dataset's values, and each position along its further axes.
+void AddEach(
+  const std::vector<HdfValues>& values, const HdfVolume& dataset, std::vector<HdfVolume>& found)
+{
+  const std::vector<HdfAxes> places = dataset.Axes.Split();
+  for (const HdfValues& one : values)
+  {
+    for (std::size_t place = 0; place < places.size(); ++place)
+    {
+      HdfVolume volume = dataset;
+      volume.Member = one.Member;
+      volume.Name += one.Member.empty() ? "" : "/" + one.Member;
+      volume.Name += places.size() == 1 ? "" : " " + std::to_string(place);
+      volume.Axes = places[place];
+      found.push_back(std::move(volume));
+    }
+  }
+}
 
 } // namespace
 
@@ -72,11 +130,21 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     {
       others.Closed.push_back(name);
     }
-    if (!dataset.IsOpen() || !FindHdfValues(dataset.Get()))
+    if (!dataset.IsOpen())
     {
       continue;
     }
     const std::vector<hsize_t> shape = GetHdfShape(dataset.Get());
+    const std::vector<HdfValues> values = FindHdfValues(dataset.Get());
+    if (values.empty())
+    {
+      if (shape.size() >= 3)
+      {
+        others.OfTypes.push_back(name);
+        others.Types.push_back(DescribeHdfType(dataset.Get()));
+      }
+      continue;
+    }
     HdfVolume volume;
     volume.Name = name;
     volume.Datasets = { name };
@@ -86,7 +154,8 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     {
       const VolumeShape own = volume.Axes.GetShape();
       volumes.Shape = own.IsLargerThan(volumes.Shape) ? own : volumes.Shape;
-      volumes.Found.push_back(std::move(volume));
+      AddEach(values, volume, volumes.Found);
+      CheckLimit(path, "arrays", volumes.Found.size(), FileLimits::Arrays);
     }
     else if (!tooLong.empty() && names.size() == 1)
     {
@@ -94,7 +163,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     }
     else
     {
-      others.OfNumbers.push_back("'" + name + "' (" + DescribeHdfShape(shape) + ")");
+      others.Add(name, shape, volume.Notes);
     }
   }
   auto& found = volumes.Found;
@@ -103,18 +172,20 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
       [&](const HdfVolume& one) { return !one.Axes.GetShape().BelongsTo(volumes.Shape); }),
     found.end());
   volumes.Missing = others.DescribeMissing(file, wanted);
-  const std::string damage = others.DescribeDamage();
-  if (!damage.empty())
+  for (const std::string& what : { others.DescribeDamage(), others.DescribeTypes() })
   {
-    volumes.Warnings.push_back("has " + damage);
+    if (!what.empty())
+    {
+      volumes.Warnings.push_back("has " + what);
+    }
   }
   volumes.Steps = static_cast<int>(std::max<std::int64_t>(1, volumes.Shape.Times));
   if (wanted.empty())
   {
     JoinOpenPmdSteps(file, volumes);
   }
-  std::sort(found.begin(), found.end(),
-    [](const HdfVolume& a, const HdfVolume& b) { return a.Name < b.Name; });
+  std::stable_sort(found.begin(), found.end(),
+    [](const HdfVolume& a, const HdfVolume& b) { return a.Datasets.front() < b.Datasets.front(); });
   return volumes;
 }
 

@@ -13,11 +13,14 @@
 namespace vol
 {
 
-/// A dataset that holds a volume, and what is known of its axes.
+/// A volume in a dataset, and what is known of its axes.
 struct HdfVolume
 {
-  std::string Name;                  ///< path in the file, or in each iteration of an openPMD file
+  /// Path in the file, or in each iteration of an openPMD file; of a member with "/" and its name
+  /// behind it, of several volumes in a dataset with a blank and a number.
+  std::string Name;
   std::vector<std::string> Datasets; ///< paths in the file: of all steps, or one of each
+  std::string Member;                ///< see HdfValues
   HdfAxes Axes;
   AxisNotes Notes;
   std::vector<std::string> Warnings; ///< as VolumeFile has them

@@ -63,6 +63,22 @@ std::vector<double> ReadTimes(hid_t file, const std::map<std::uint64_t, std::str
   return FindTimes(note, static_cast<int>(iterations.size()), warnings);
 }
 
+/// What has time steps of its own, and another number of them than there are iterations, cannot be
+/// shown beside these.
+void LeaveOutOthersInTime(std::size_t iterations, HdfVolumes& volumes)
+{
+  const auto first = std::stable_partition(volumes.Found.begin(), volumes.Found.end(),
+    [=](const HdfVolume& one) { return one.Axes.Frames == 0 || one.Axes.Frames == iterations; });
+  for (auto volume = first; volume != volumes.Found.end(); ++volume)
+  {
+    volumes.Warnings.push_back("has array " + Quote(volume->Name) + " with " +
+      std::to_string(volume->Axes.Frames) + " time steps beside " + std::to_string(iterations) +
+      " iterations. It is not shown. To show it, give its dataset " +
+      Quote(volume->Datasets.front()) + ".");
+  }
+  volumes.Found.erase(first, volumes.Found.end());
+}
+
 bool IsSameNote(const AxisNote& a, const AxisNote& b)
 {
   return a.Origin == b.Origin && a.Spacing == b.Spacing;
@@ -107,7 +123,8 @@ void JoinOpenPmdSteps(hid_t file, HdfVolumes& volumes)
     {
       joined.Datasets.push_back(step.Datasets.front());
       isAlike = isAlike && step.Axes.Order == joined.Axes.Order &&
-        step.Axes.Components == joined.Axes.Components &&
+        step.Axes.Lengths == joined.Axes.Lengths && step.Axes.Space == joined.Axes.Space &&
+        step.Axes.Component == joined.Axes.Component && step.Member == joined.Member &&
         (iterations.size() == 1 || step.Axes.Frames == 0);
       moves = moves ||
         !std::equal(step.Notes.begin(), step.Notes.end(), joined.Notes.begin(), joined.Notes.end(),
@@ -134,6 +151,7 @@ void JoinOpenPmdSteps(hid_t file, HdfVolumes& volumes)
   }
   if (iterations.size() > 1)
   {
+    LeaveOutOthersInTime(iterations.size(), volumes);
     volumes.Steps = static_cast<int>(iterations.size());
     volumes.Times = ReadTimes(file, iterations, volumes.Warnings);
     volumes.Missing = "mesh that all iterations have in one form. Give one of its datasets.";

@@ -34,9 +34,10 @@ AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, con
 {
   AxisNotes notes = NameZarrAxes(folder, data);
   const std::size_t count = data.Shape.size();
+  const auto first = static_cast<std::size_t>(axes.Leading);
   TakeVoxelSize([&](const char* name)
     { return ZarrJson::ToNumbers(ZarrJson::Find(data.Attributes, name)); },
-    notes, static_cast<std::size_t>(axes.Leading));
+    notes, { first, first + 1, first + 2 });
   const std::string beside = std::filesystem::path(folder).parent_path().string();
   for (std::size_t axis = 0; axis < count; ++axis)
   {
@@ -48,7 +49,9 @@ AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, con
       if (numbers.size() == static_cast<std::size_t>(data.Shape[axis]))
       {
         note.Coordinates = std::move(numbers);
-        note.Unit = ZarrJson::GetText(coordinates, ReadZarrAttributes(coordinates), "units");
+        const nlohmann::json attributes = ReadZarrAttributes(coordinates);
+        note.Unit = ZarrJson::GetText(coordinates, attributes, "units");
+        TakeUpDown(ZarrJson::GetText(coordinates, attributes, "positive"), note);
       }
     }
   }
