@@ -82,7 +82,7 @@ public:
     bricks::ForEachIndex(this->GetArrays().front().Grid.GetBox(chunk),
       [&](const bricks::Index3& at)
       {
-        const bool isMissing = this->GetArrays().front().Valid.Fill == 0.5;
+        const bool isMissing = this->GetArrays().front().Valid.Fills.front() == 0.5;
         const float fill = isMissing ? std::numeric_limits<float>::quiet_NaN() : 0.5f;
         *to++ = IsThere(chunk) ? GetValue(at) : fill;
       });

@@ -55,7 +55,7 @@ def make_plain(folder):
         file["deep/g"].attrs["numbers"] = [1.0, 2.0]
         file["kind"] = np.dtype("<f4")
         file.create_dataset("named", SHAPE, file["kind"])
-    for name, kind in (("labels", {"chunks": (2, 2, 2, 3, 4)}), ("labels_contiguous", {})):
+    for name, kind in (("labels", {"chunks": (2, 3, 2, 3, 1)}), ("labels_contiguous", {})):
         with h5py.File(path(folder, "Hdf", name + ".h5"), "w") as file:
             dataset = file.create_dataset("f", data=values("|u1", (2, *SHAPE, 2)), **kind)
             for axis, label in enumerate(("c", "z", "y", "x", "t")):

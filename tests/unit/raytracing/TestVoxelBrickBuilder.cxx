@@ -209,6 +209,23 @@ TEST(TestValidValues, FloatingPointGiantsStandForWhatIsBeyondThem)
   EXPECT_TRUE(std::isnan(values[1]));
 }
 
+TEST(TestValidValues, SeveralValuesAreMissing)
+{
+  bricks::ValidValues valid;
+  for (const double fill : { 3.0, 4.0, 1e20, -9999.0 })
+  {
+    EXPECT_TRUE(valid.AddFill(fill));
+    EXPECT_TRUE(valid.AddFill(fill)); // again
+  }
+  EXPECT_FALSE(valid.AddFill(5.0));
+  EXPECT_TRUE(valid.AddFill(std::nan("")));
+  const bricks::MissingTest<std::int16_t> isMissing(valid);
+  EXPECT_TRUE(isMissing(3) && isMissing(4) && isMissing(-9999));
+  EXPECT_FALSE(isMissing(5));
+  EXPECT_TRUE(bricks::MissingTest<float>(valid)(2e20f));
+  EXPECT_FALSE(bricks::MissingTest<float>(valid)(-2e20f));
+}
+
 TEST(TestVoxelBrick, CellsWithoutDataAreLeftOutOfTheRange)
 {
   TestVolume<float> volume({ 9, 5, 5 }, [](int x, int, int) { return static_cast<float>(x); });

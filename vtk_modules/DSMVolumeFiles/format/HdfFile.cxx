@@ -408,7 +408,7 @@ private:
   bool LocateBy(const HdfVolume& volume)
   {
     this->Warnings.insert(this->Warnings.end(), volume.Warnings.begin(), volume.Warnings.end());
-    if (volume.Notes.size() != volume.Axes.Lengths.size())
+    if (volume.Notes->size() != volume.Axes.Lengths.size())
     {
       return true;
     }
@@ -419,7 +419,7 @@ private:
     for (std::size_t axis = 0; axis < inSpace.size(); ++axis)
     {
       inSpace[static_cast<std::size_t>(volume.Axes.Order[axis])] =
-        volume.Axes.Space[axis] ? &volume.Notes[*volume.Axes.Space[axis]] : nullptr;
+        volume.Axes.Space[axis] ? &(*volume.Notes)[*volume.Axes.Space[axis]] : nullptr;
     }
     std::vector<std::string> warnings;
     if (this->IsPlaced)
@@ -428,7 +428,7 @@ private:
     }
     if (volume.Axes.Time && this->Times.empty())
     {
-      this->Times = FindTimes(volume.Notes[*volume.Axes.Time], this->Steps, this->Warnings);
+      this->Times = FindTimes((*volume.Notes)[*volume.Axes.Time], this->Steps, this->Warnings);
     }
     if (!this->Arrays.empty())
     {

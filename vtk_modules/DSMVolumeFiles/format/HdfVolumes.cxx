@@ -97,10 +97,9 @@ struct OtherDatasets
 };
 
 /// Adds a volume for each member of a dataset's values, and each position along its further axes.
-void AddEach(
-  const std::vector<HdfValues>& values, const HdfVolume& dataset, std::vector<HdfVolume>& found)
+void AddEach(const std::vector<HdfValues>& values, const std::vector<HdfAxes>& places,
+  const HdfVolume& dataset, std::vector<HdfVolume>& found)
 {
-  const std::vector<HdfAxes> places = dataset.Axes.Split();
   for (const HdfValues& one : values)
   {
     for (std::size_t place = 0; place < places.size(); ++place)
@@ -148,14 +147,17 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     HdfVolume volume;
     volume.Name = name;
     volume.Datasets = { name };
-    volume.Notes = ReadHdfNotes(file, dataset.Get(), volume.Warnings);
+    volume.Notes =
+      std::make_shared<const AxisNotes>(ReadHdfNotes(file, dataset.Get(), volume.Warnings));
     std::string tooLong;
-    if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, volume.Notes, &tooLong))
+    if (volume.Axes.Find(shape, HdfAxes::Kind::Unknown, *volume.Notes, &tooLong))
     {
       const VolumeShape own = volume.Axes.GetShape();
       volumes.Shape = own.IsLargerThan(volumes.Shape) ? own : volumes.Shape;
-      AddEach(values, volume, volumes.Found);
-      CheckLimit(path, "arrays", volumes.Found.size(), FileLimits::Arrays);
+      const std::vector<HdfAxes> places = volume.Axes.Split();
+      CheckLimit(
+        path, "arrays", volumes.Found.size() + values.size() * places.size(), FileLimits::Arrays);
+      AddEach(values, places, volume, volumes.Found);
     }
     else if (!tooLong.empty() && names.size() == 1)
     {
@@ -163,7 +165,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
     }
     else
     {
-      others.Add(name, shape, volume.Notes);
+      others.Add(name, shape, *volume.Notes);
     }
   }
   auto& found = volumes.Found;

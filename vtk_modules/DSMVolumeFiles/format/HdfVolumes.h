@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 #include "DSMVolumeFiles/format/VolumeShape.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct HdfVolume
   std::vector<std::string> Datasets; ///< paths in the file: of all steps, or one of each
   std::string Member;                ///< see HdfValues
   HdfAxes Axes;
-  AxisNotes Notes;
-  std::vector<std::string> Warnings; ///< as VolumeFile has them
+  std::shared_ptr<const AxisNotes> Notes; ///< volumes of one dataset share them
+  std::vector<std::string> Warnings;      ///< as VolumeFile has them
 };
 
 /// The volumes of the largest shape in a file that is not VTKHDF.

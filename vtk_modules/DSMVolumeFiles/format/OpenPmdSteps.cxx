@@ -127,8 +127,8 @@ void JoinOpenPmdSteps(hid_t file, HdfVolumes& volumes)
         step.Axes.Component == joined.Axes.Component && step.Member == joined.Member &&
         (iterations.size() == 1 || step.Axes.Frames == 0);
       moves = moves ||
-        !std::equal(step.Notes.begin(), step.Notes.end(), joined.Notes.begin(), joined.Notes.end(),
-          &IsSameNote);
+        !std::equal(step.Notes->begin(), step.Notes->end(), joined.Notes->begin(),
+          joined.Notes->end(), &IsSameNote);
     }
     if (!isAlike)
     {
