@@ -403,6 +403,19 @@ TEST(HostileHdf, SourcesOfAVirtualDatasetAreCountedOnce)
   EXPECT_EQ(ReadWatched(folder / "data.h5"), "");
 }
 
+/// The library would show memory behind them.
+TEST(HostileHdf, FewerStoredValuesThanTheShapeHasAreRefused)
+{
+  const fs::path path = MakeFolder("fewer") / "fewer.h5";
+  const HdfHandle compound(H5Tcreate(H5T_COMPOUND, 8), &H5Tclose);
+  H5Tinsert(compound.Get(), "m", 4, H5T_NATIVE_FLOAT);
+  Writer file(path);
+  Writer::WriteAll(
+    file.Add("a", { 5, 6, 7 }, {}, compound.Get()), compound.Get(), std::vector<double>(5 * 6 * 7));
+  file.Replace(Bytes(LongWords{ 5, 6, 7 }), Bytes(LongWords{ 5, 6, 9 }));
+  ExpectRefusal(path, { "'a/m'", "fewer values than its shape declares" });
+}
+
 /// Reading from a pipe would wait for whoever writes to it.
 TEST(HostileHdf, ValuesInAPipeAreRefused)
 {

@@ -90,8 +90,13 @@ haddr_t FindHdfValuesPlace(
   return first;
 }
 
-void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name)
+void CheckHdfStored(hid_t dataset, const std::string& path, const std::string& name)
 {
+  H5D_space_status_t status = H5D_SPACE_STATUS_NOT_ALLOCATED;
+  if (H5Dget_space_status(dataset, &status) >= 0 && status == H5D_SPACE_STATUS_NOT_ALLOCATED)
+  {
+    return; // all have the fill value
+  }
   const HdfHandle space(H5Dget_space(dataset), &H5Sclose);
   const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space.Get());

@@ -28,9 +28,9 @@ std::vector<hsize_t> GetHdfChunkEdges(
 haddr_t FindHdfValuesPlace(
   hid_t dataset, const PositionedFile& file, const FileArray& array, std::uint64_t slices);
 
-/// Throws dsm::Error where a dataset whose values are in its header has fewer of them than its shape says: the library
-/// would read beyond them.
-void CheckHdfCompact(hid_t dataset, const std::string& path, const std::string& name);
+/// Throws dsm::Error where a dataset whose values are in one piece, or in its header, has fewer of
+/// them than its shape says: the library would read beyond them.
+void CheckHdfStored(hid_t dataset, const std::string& path, const std::string& name);
 
 /// Reads the places of the chunks of a dataset that have samples of a volume with these axes.
 /// Returns nothing if the file has an index of another kind, or addresses of another size: then

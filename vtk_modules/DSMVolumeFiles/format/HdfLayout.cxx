@@ -149,6 +149,10 @@ std::optional<HdfLayout> HdfLayout::Find(const Place& place, HdfHandle id, const
   switch (H5Pget_layout(properties.Get()))
   {
     case H5D_CONTIGUOUS:
+      if (!isElsewhere)
+      {
+        CheckHdfStored(dataset.Id.Get(), place.Path, name);
+      }
       dataset.First = dataset.ReadByLibrary
         ? HADDR_UNDEF
         : FindHdfValuesPlace(dataset.Id.Get(), place.Bytes, array, axes.CountSlices(axes.Lengths));
@@ -173,7 +177,7 @@ std::optional<HdfLayout> HdfLayout::Find(const Place& place, HdfHandle id, const
       break;
     }
     case H5D_COMPACT:
-      CheckHdfCompact(dataset.Id.Get(), place.Path, name);
+      CheckHdfStored(dataset.Id.Get(), place.Path, name);
       dataset.ReadByLibrary = true;
       break;
     default:
