@@ -182,13 +182,17 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   {
     if (isMissing)
     {
-      warnings.push_back(std::string("The volume's property specifies ") + feature +
+      warnings.push_back(std::string("The volume is to be drawn with ") + feature +
         ", which DSM Ray Tracer does not support for volumes. The volume is drawn without it. " +
         remedy);
     }
   };
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+  warn(!this->Mapper->GetOpacityArray().empty() && !this->HasOpacityArray(),
+    "opacities from another array, in this blend mode",
+    "Call SetBlendModeToComposite() or SetOpacityArray(\"\") on the mapper. In ParaView, set Blend "
+    "Mode to Composite, or turn off Use Separate Opacity Array.");
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;
