@@ -390,6 +390,28 @@ TEST_F(VolumeMapperOfFunctions, ColorsBelowAndAboveTheRangeAreThoseOfTheRayCastM
   }
 }
 
+TEST_F(VolumeMapperOfFunctions, TheMeanOfASingleValueIsThatOfTheRayCastMapper)
+{
+  this->SetNodes({ { 0.0, 0.2, 1.0 }, { 300.0, 0.9, 1.0 } });
+  const auto image = MakeBall();
+  image->GetPointData()->GetScalars()->Fill(255.0);
+  this->Renderer->SetBackground(0.2, 0.5, 0.3);
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+  vtkNew<vtkUnsignedCharArray> pictures[2];
+  for (vtkVolumeMapper* const mapper :
+    { static_cast<vtkVolumeMapper*>(theirs.Get()), static_cast<vtkVolumeMapper*>(this->Mapper) })
+  {
+    mapper->SetInputDataObject(image);
+    mapper->SetBlendMode(vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    this->Window->GetPixelData(
+      0, 0, Size - 1, Size - 1, 0, pictures[mapper == theirs.Get() ? 0 : 1]);
+  }
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 0.5);
+}
+
 TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
 {
   this->Mapper->SetNumberOfIsoValues(0);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace rt
@@ -204,16 +205,17 @@ TransferFunction::Whole TransferFunction::Divide(
     whole.Tinge += tinge;
   }
   this->Divided.push_back({ first, this->Places.size() });
+  this->Table[static_cast<std::size_t>(number)].Begin =
+    Lanes(std::numeric_limits<double>::quiet_NaN());
   return whole;
 }
 
-const TransferFunction::Bin& TransferFunction::FindPart(int number, double& way) const
+Lanes TransferFunction::IntegratePart(int number, double place, Lanes& slope) const
 {
   const Division& division = this->Divided[this->Divisions[static_cast<std::size_t>(number)]];
-  const double place = way + (number - 1);
   const std::size_t part = this->FindPart(division, place);
-  way = place - this->Places[part];
-  return this->Table[static_cast<std::size_t>(this->AllBins) + part];
+  return Integrate(
+    this->Table[static_cast<std::size_t>(this->AllBins) + part], place - this->Places[part], slope);
 }
 
 std::size_t TransferFunction::FindPart(const Division& division, double place) const
@@ -224,11 +226,25 @@ std::size_t TransferFunction::FindPart(const Division& division, double place) c
   return static_cast<std::size_t>(std::upper_bound(begin, end, place) - this->Places.begin() - 1);
 }
 
+TransferFunction::Behavior TransferFunction::FindBinBehavior(int first, int last) const
+{
+  if (!this->AnyIsSeen(first, last))
+  {
+    return {};
+  }
+  const int firstGroup = first / BinsOfGroup;
+  const int count = last / BinsOfGroup - firstGroup + 1;
+  const int level = 31 - __builtin_clz(static_cast<unsigned>(count));
+  const std::vector<Behavior>& groups = this->Largest[static_cast<std::size_t>(level)];
+  return GetLarger(groups[static_cast<std::size_t>(firstGroup)],
+    groups[static_cast<std::size_t>(firstGroup + count - (1 << level))]);
+}
+
 TransferFunction::Behavior TransferFunction::FindBehavior(double begin, double end) const
 {
   const int first = this->GetNumber(begin);
   const int last = this->GetNumber(end);
-  return end - begin < 1.0 && this->IsFine(first, last) ? this->FindFineBehavior(begin, end)
+  return this->IsFine(first, last) && end - begin < 1.0 ? this->FindFineBehavior(begin, end)
                                                         : this->FindBinBehavior(first, last);
 }
 
@@ -252,20 +268,6 @@ TransferFunction::Behavior TransferFunction::FindFineBehavior(double begin, doub
     }
   }
   return largest;
-}
-
-TransferFunction::Behavior TransferFunction::FindBinBehavior(int first, int last) const
-{
-  if (!this->AnyIsSeen(first, last))
-  {
-    return {};
-  }
-  const int firstGroup = first / BinsOfGroup;
-  const int count = last / BinsOfGroup - firstGroup + 1;
-  const int level = 31 - __builtin_clz(static_cast<unsigned>(count));
-  const std::vector<Behavior>& groups = this->Largest[static_cast<std::size_t>(level)];
-  return GetLarger(groups[static_cast<std::size_t>(firstGroup)],
-    groups[static_cast<std::size_t>(firstGroup + count - (1 << level))]);
 }
 
 } // namespace rt

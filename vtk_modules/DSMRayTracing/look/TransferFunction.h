@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -46,7 +47,8 @@ public:
   /// Bins in a unit of values.
   double GetScale() const { return this->Scale; }
 
-  /// Linear in each: bin 0 is what is below the function's range, the last one what is above.
+  /// Linear in each: bin 0 is what is below the function's range, the last one what is above. The
+  /// begin of a divided bin is not a number: ask Integrate.
   struct Bin
   {
     Lanes Integral; ///< up to the bin's begin
@@ -56,21 +58,15 @@ public:
   const Bin* GetTable() const { return this->Table.data(); }
   /// Number of even bins, with the two beyond the range.
   int GetTableSize() const { return this->AllBins; }
-  /// Of each even bin, 0 if it is whole, else the number of its division.
-  const std::uint32_t* GetDivisions() const { return this->Divisions.data(); }
-  /// The part of a divided bin where a place is. `way`: from the begin of the bin, in even bins;
-  /// becomes that from the begin of the part.
-  const Bin& FindPart(int number, double& way) const;
 
   /// Emission (x, y, z) and extinction, integrated from First to a place in bins from there.
-  Lanes Integrate(double place) const
+  /// `slope`: what they are there.
+  Lanes Integrate(double place, Lanes& slope) const
   {
     const int number = this->GetNumber(place);
-    double way = place - (number - 1);
-    const Bin& bin = this->Divisions[static_cast<std::size_t>(number)] == 0
-      ? this->Table[static_cast<std::size_t>(number)]
-      : this->FindPart(number, way);
-    return bin.Integral + (bin.Begin + Lanes(0.5) * (bin.Growth * Lanes(way))) * Lanes(way);
+    const Bin& bin = this->Table[static_cast<std::size_t>(number)];
+    return std::isnan(bin.Begin[3]) ? this->IntegratePart(number, place, slope)
+                                    : Integrate(bin, place - (number - 1), slope);
   }
 
   /// How the function behaves between two places in bins from First, the second not less than the first.
@@ -121,6 +117,13 @@ private:
   Whole Divide(
     int number, const std::vector<Corner>& corners, const glm::dvec4& integral, double cellLength);
   std::size_t FindPart(const Division& division, double place) const;
+  Lanes IntegratePart(int number, double place, Lanes& slope) const;
+  static Lanes Integrate(const Bin& bin, double way, Lanes& slope)
+  {
+    const Lanes change = bin.Growth * Lanes(way);
+    slope = bin.Begin + change;
+    return bin.Integral + (bin.Begin + Lanes(0.5) * change) * Lanes(way);
+  }
 
   /// A place that is not a number is in bin 0.
   int GetNumber(double place) const
@@ -155,6 +158,7 @@ private:
   double Last; ///< end of the range, in bins from First
   int AllBins;
   std::vector<Bin> Table; ///< even bins, then the parts of all divided ones
+  /// Of each even bin, 0 if it is whole, else the number of its division.
   std::vector<std::uint32_t> Divisions;
   std::vector<Division> Divided; ///< by division; the first one is of no bin
   std::vector<double> Places;    ///< where each part begins, in even bins

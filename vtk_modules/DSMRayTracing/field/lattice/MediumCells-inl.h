@@ -135,7 +135,6 @@ public:
   MediumCells(const TransferFunction& function, MediumLight& light)
     : Function(function)
     , Table(function.GetTable())
-    , Divisions(function.GetDivisions())
     , Light(light)
   {
   }
@@ -264,7 +263,7 @@ private:
     for (std::uint32_t lanes = left; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      this->Find(begin, lane).Integrate().Store(pieces.Integral[lane]);
+      this->Integrate(begin, lane).Store(pieces.Integral[lane]);
     }
     std::uint32_t ended = 0;
     for (int number = 1; number <= most && left != 0; ++number)
@@ -323,34 +322,26 @@ private:
     found = { hn::Load(tag, extinctions), hn::Load(tag, changes), hn::Load(tag, tinges) };
   }
 
-  /// A place in a bin, or in a part of one.
-  struct Found
+  /// TransferFunction::Integrate, and what it says of the slope; not a number in divided bins.
+  HWY_INLINE Row Integrate(const Located& places, int lane) const
   {
-    const TransferFunction::Bin& Bin;
-    double Way; ///< from its begin
-
-    /// TransferFunction::Integrate.
-    HWY_INLINE Row Integrate() const
-    {
-      const Row way(this->Way);
-      return Row(this->Bin.Integral) +
-        (Row(this->Bin.Begin) + Row(0.5) * (Row(this->Bin.Growth) * way)) * way;
-    }
-    HWY_INLINE Row GetSlope() const
-    {
-      return Row(this->Bin.Begin) + Row(this->Bin.Growth) * Row(this->Way);
-    }
-  };
-  HWY_INLINE Found Find(const Located& places, int lane) const
+    const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
+    const Row way(places.Way[lane]);
+    return Row(bin.Integral) + (Row(bin.Begin) + Row(0.5) * (Row(bin.Growth) * way)) * way;
+  }
+  HWY_INLINE Row GetSlope(const Located& places, int lane) const
   {
-    const std::uint64_t number = places.Number[lane];
-    double way = places.Way[lane];
-    if (HWY_UNLIKELY(this->Divisions[number] != 0))
-    {
-      const TransferFunction::Bin& part = this->Function.FindPart(static_cast<int>(number), way);
-      return { part, way };
-    }
-    return { this->Table[number], way };
+    const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
+    return Row(bin.Begin) + Row(bin.Growth) * Row(places.Way[lane]);
+  }
+  /// The growth of the integral between two places, or the slope at the second one where `isShort`,
+  /// in any bins. `integral`: becomes that up to the second one.
+  HWY_NOINLINE Lanes IntegrateParts(double start, double stop, bool isShort, Lanes& integral) const
+  {
+    Lanes slope;
+    const Lanes before = this->Function.Integrate(start, slope);
+    integral = this->Function.Integrate(stop, slope);
+    return isShort ? slope : integral - before;
   }
 
   /// Goes on to where piece `number` ends, for those of `lanes` that have as many. Returns those that are dark.
@@ -386,20 +377,34 @@ private:
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      const Found place = this->Find(located, lane);
-      const Row integral = place.Integrate();
-      const Row growth =
-        (shortOnes >> lane & 1) != 0 ? place.GetSlope() : integral - Row(pieces.Integral[lane]);
+      const Row integral = this->Integrate(located, lane);
+      const Row growth = (shortOnes >> lane & 1) != 0 ? this->GetSlope(located, lane)
+                                                      : integral - Row(pieces.Integral[lane]);
       (growth * Row(factors[lane])).Store(amounts[lane]);
       integral.Store(pieces.Integral[lane]);
       depths[lane] = amounts[lane].High[1];
-      some |= std::uint32_t{ depths[lane] > 0.0 } << lane;
+      some |= std::uint32_t{ !(depths[lane] <= 0.0) } << lane;
     }
     if (some == 0)
     {
       return 0;
     }
-    const Vector depth = hn::Load(tag, depths);
+    Vector depth = hn::Load(tag, depths);
+    const std::uint32_t divided = GetMaskBits(tag, hn::IsNaN(depth));
+    if (HWY_UNLIKELY(divided != 0))
+    {
+      for (std::uint32_t left = divided & some; left != 0; left &= left - 1)
+      {
+        const int lane = __builtin_ctz(left);
+        const bool isShort = (shortOnes >> lane & 1) != 0;
+        const Lanes growth =
+          this->IntegrateParts(starts[lane], stops[lane], isShort, pieces.Integral[lane]);
+        amounts[lane] = growth * Lanes(factors[lane]);
+        depths[lane] = amounts[lane][3];
+        some &= ~(std::uint32_t{ !(depths[lane] > 0.0) } << lane);
+      }
+      depth = hn::Load(tag, depths);
+    }
     const Vector passed = GetTransmittance(depth);
     // (1 - exp(-depth)) / depth
     const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
@@ -447,7 +452,11 @@ private:
     {
       return part;
     }
-    const auto integrate = [&](double place) { return this->Function.Integrate(place)[3]; };
+    const auto integrate = [&](double place)
+    {
+      Lanes slope;
+      return this->Function.Integrate(place, slope)[3];
+    };
     const double first = integrate(start);
     const double whole = integrate(stop) - first;
     double low = 0.0;
@@ -463,7 +472,6 @@ private:
 
   const TransferFunction& Function;
   const TransferFunction::Bin* Table;
-  const std::uint32_t* Divisions;
   MediumLight& Light;
 };
 
