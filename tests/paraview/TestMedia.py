@@ -123,6 +123,24 @@ once = render(view)
 check(abs(once - twice).mean() < 0.1, f"the same array twice is once: {abs(once - twice).mean():.3f}")
 check(abs(once - far)[get_covered(once)].mean() > 5.0, "another array for opacity is another picture")
 
+# As the color map's editor sets it: a logarithmic map of values from 0 on, and colors beyond the range.
+simple.ColorBy(display, ("POINTS", "ways"))
+display.RescaleTransferFunctionToDataRange(True, False)
+colors, of_ways = simple.GetColorTransferFunction("ways"), simple.GetOpacityTransferFunction("ways")
+colors.MapControlPointsToLogSpace()
+colors.UseLogScale = 1
+from_zero = render(view, "LogScale")
+of_ways.Points = [colors.RGBPoints[0], *of_ways.Points[1:]]
+check(abs(from_zero - render(view)).mean() < 0.5, "a logarithmic map shows values from 0 on")
+colors.UseLogScale, colors.RGBPoints = 0, [6.0, 0.1, 0.2, 1.0, 10.0, 0.1, 0.2, 1.0]
+of_ways.Points = [6.0, 0.1, 0.5, 0.0, 10.0, 0.1, 0.5, 0.0]
+inside = render(view)
+colors.UseBelowRangeColor, colors.BelowRangeColor = 1, [1.0, 0.0, 0.0]
+colors.UseAboveRangeColor, colors.AboveRangeColor = 1, [0.0, 1.0, 0.0]
+compare("RangeColors")
+check(abs(inside - render(view)).mean() > 5.0, "what is below and above the range has its own colors")
+simple.ColorBy(display, ("POINTS", "waves"))
+
 # Components are colors and opacities: of two, the color function maps the first and the opacity function the second; of
 # four, the first three are the color. Volume has the unit distance 1 then, and takes bytes for 0 to 255.
 unit_distance = display.ScalarOpacityUnitDistance

@@ -41,6 +41,19 @@ const Nodes Fog = { { -3.0, { 0.1, 0.3, 0.9, 0.0 } }, { 0.0, { 0.3, 0.8, 0.4, 1.
 const Nodes Peak = { { -3.0, { 0.9, 0.5, 0.1, 0.0 } }, { 0.0, { 0.9, 0.5, 0.1, 0.0 } },
   { 3.0 / 256, { 0.9, 0.5, 0.1, 120.0 } }, { 6.0 / 256, { 0.9, 0.5, 0.1, 0.0 } },
   { 3.0, { 0.9, 0.5, 0.1, 0.0 } } };
+/// A quarter of an even bin, in a range of which values that lie near 0 fill a few bins.
+Nodes GetNarrowPeak(double range)
+{
+  const double width = 0.25 * 2.0 * range / rt::TransferFunction::Bins;
+  const glm::dvec4 color(0.9, 0.5, 0.1, 0.0);
+  return { { -range, color }, { 0.1, color },
+    { 0.1 + 0.5 * width, color + glm::dvec4(0.0, 0.0, 0.0, 3.0 / width) }, { 0.1 + width, color },
+    { range, color } };
+}
+/// Two steps in one even bin, each of color and extinction.
+const Nodes Steps = { { -3e4, { 0.1, 0.3, 0.9, 0.5 } }, { 0.1, { 0.1, 0.3, 0.9, 0.5 } },
+  { 0.1 + 1e-9, { 0.9, 0.8, 0.1, 8.0 } }, { 0.7, { 0.9, 0.8, 0.1, 8.0 } },
+  { 0.7 + 1e-9, { 0.2, 0.9, 0.3, 0.0 } }, { 3e4, { 0.2, 0.9, 0.3, 0.0 } } };
 /// Colors change where little light gets through.
 const Nodes Rainbow = { { -1.0, { 1.0, 0.0, 0.0, 0.0 } }, { -0.5, { 0.0, 1.0, 0.0, 30.0 } },
   { 0.5, { 0.0, 0.0, 1.0, 90.0 } }, { 1.5, { 1.0, 1.0, 0.0, 10.0 } } };
@@ -71,7 +84,7 @@ protected:
 
   /// Of a mean, values above 0 count.
   void Add(const std::function<double(const glm::dvec3&)>& values, const Nodes& nodes,
-    Blending blending = Blending::Composite, const rt::MediumLook& look = {})
+    Blending blending = Blending::Composite, const rt::MediumLook& ownLook = {})
   {
     rt::LatticeField field =
       FunctionVolume::Publish(Points, values, this->Messenger, this->Store).Field;
@@ -83,36 +96,46 @@ protected:
     }
     const double first = nodes.front().first;
     const double last = nodes.back().first;
-    std::vector<glm::dvec4> samples;
-    std::vector<rt::LatticeSum::Sample> summed;
-    rt::ColorMap colors;
-    colors.First = first;
-    colors.Last = last;
-    for (int sample = 0; sample <= rt::TransferFunction::Bins; ++sample)
+    std::vector<double> places;
+    for (const auto& node : nodes)
     {
-      const double value = first + (last - first) * sample / rt::TransferFunction::Bins;
-      const glm::dvec4 here = Evaluate(nodes, value);
-      samples.push_back(here);
-      summed.push_back({ here.x, blending == Blending::Mean && value < 0.0 ? 0.0 : 1.0 });
-      colors.Table.emplace_back(glm::dvec3(here), GetOpacity(here));
+      places.push_back(node.first);
     }
-    colors.Below = colors.Table.front();
-    colors.Above = colors.Table.back();
+    const auto look = [&](double value) { return Evaluate(nodes, value); };
+    const auto sum = [&](double value)
+    {
+      const double weight = blending == Blending::Mean && value < 0.0 ? 0.0 : 1.0;
+      return rt::LatticeSum::ToLook({ look(value).x, weight }, 2.0);
+    };
+    const auto colors = std::make_shared<rt::ColorMap>();
+    colors->First = first;
+    colors->Last = last;
+    colors->Sample(
+      rt::TransferFunction::Bins,
+      [&](double value)
+      {
+        const glm::dvec4 here = look(value);
+        return glm::vec4(glm::dvec3(here), GetOpacity(here));
+      },
+      places);
+    colors->Below = colors->Map(first);
+    colors->Above = colors->Map(last);
     switch (blending)
     {
       case Blending::Composite:
         this->World.Media.push_back(rt::LatticeMedium{ field,
-          std::make_shared<rt::TransferFunction>(first, last, samples, 2.0 / (Points - 1)), look,
+          rt::TransferFunction::Create(first, last, look, places, 0.0, 2.0 / (Points - 1)), ownLook,
           {} });
         break;
       case Blending::Maximum:
       case Blending::Minimum:
-        this->World.Media.push_back(rt::LatticeExtremum{
-          field, std::make_shared<rt::ColorMap>(colors), blending == Blending::Minimum, {} });
+        this->World.Media.push_back(
+          rt::LatticeExtremum{ field, colors, blending == Blending::Minimum, {} });
         break;
       default:
+        places.push_back(0.0);
         this->World.Media.push_back(
-          rt::LatticeSum{ field, rt::LatticeSum::CreateFunction(first, last, summed, 2.0),
+          rt::LatticeSum{ field, rt::TransferFunction::Create(first, last, sum, places, 0.0, 0.0),
             blending == Blending::Mean, {} });
     }
     this->Blended = blending;
@@ -127,7 +150,7 @@ protected:
         }
       }
     }
-    this->Parts.push_back({ std::move(own), nodes, look });
+    this->Parts.push_back({ std::move(own), nodes, ownLook });
   }
 
   void Clear()
@@ -387,6 +410,25 @@ TEST_F(TestMediumIntegral, OfANarrowPeak)
   this->Add(GetWaves, Peak);
   EXPECT_LT(this->Compare(GetPerspective()), 1.0);
   EXPECT_LT(this->Compare(GetAlongZ()), 1.0);
+}
+
+TEST_F(TestMediumIntegral, OfWhatIsNarrowerThanABin)
+{
+  // Values fill 40 even bins, or a part of one.
+  for (const double range : { 300.0, 3e4 })
+  {
+    this->Add(GetWaves, GetNarrowPeak(range));
+    EXPECT_LT(this->Compare(GetPerspective()), 1.0) << range;
+    this->Clear();
+  }
+  this->Add(GetWaves, Steps);
+  EXPECT_LT(this->Compare(GetPerspective()), 2.0);
+  for (const auto blending : { Blending::Maximum, Blending::Sum })
+  {
+    this->Clear();
+    this->Add(GetWaves, Steps, blending);
+    EXPECT_LT(this->Compare(GetAlongZ()), 2.0) << static_cast<int>(blending);
+  }
 }
 
 TEST_F(TestMediumIntegral, OfColorsThatChangeWithinAWall)

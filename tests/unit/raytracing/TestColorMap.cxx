@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -84,4 +85,41 @@ TEST(TestColorMap, CategoriesHaveTheirOwnColorsAndNothingElseHasAny)
   EXPECT_FALSE(map.IsOpaque());
   map.Categories->clear();
   EXPECT_EQ(map.Map(1.0).x, -3.0f);
+}
+
+TEST(TestColorMap, WhatIsNarrowerThanAnEntryHasNodes)
+{
+  // A peak of opacity of width 4 in 65,536, and a step of color.
+  const auto color = [](double value)
+  {
+    const double opacity = std::max(0.0, 1.0 - std::abs(value - 30002.0) / 2.0);
+    return glm::vec4(value < 30001.0 ? 1.0f : 0.0f, 0.0f, 0.0f, opacity);
+  };
+  rt::ColorMap map;
+  map.Last = 65536.0;
+  map.Sample(4096, color, { 30000.0, 30001.0, 30002.0, 30004.0 });
+  for (const double value : { 30000.0, 30000.5, 30000.99, 30001.0, 30002.0, 30003.9, 30004.1 })
+  {
+    EXPECT_NEAR(map.Map(value).x, color(value).x, 1e-3) << value;
+    EXPECT_NEAR(map.Map(value).w, color(value).w, 1e-3) << value;
+  }
+  EXPECT_LT(map.Nodes.size(), 20u) << "all other entries have one color";
+  EXPECT_GT(map.FindUnseenEnd(false), 29960.0);
+  EXPECT_LT(map.FindUnseenEnd(false), 30000.0);
+  EXPECT_LT(map.FindUnseenEnd(true), 30040.0);
+}
+
+TEST(TestColorMap, LowDecadesOfALinearTableHaveNodes)
+{
+  const auto color = [](double value)
+  { return glm::vec4(std::log10(std::max(value, 1e-6)) / 12.0 + 0.5, 0.0, 0.0, 1.0); };
+  rt::ColorMap map;
+  map.First = -5.0;
+  map.Last = 1e6;
+  map.Sample(4096, color, { 1e-6, 1e6 });
+  for (double value = 1e-6; value < 1e6; value *= 3.0)
+  {
+    EXPECT_NEAR(map.Map(value).x, color(value).x, 4e-3) << value;
+  }
+  EXPECT_EQ(map.Map(-1.0).x, 0.0f);
 }

@@ -46,17 +46,21 @@ struct SumOf
     double Value;
     double Weight; ///< weight in the mean: 0 or 1
   };
-  /// `samples`: as TransferFunction has them; values are sums over a unit of length.
+  /// A sample as the look of a medium; values are sums over a unit of length. A medium that
+  /// takes nothing away adds up what it emits. It is one of some extinction, though, where it counts.
+  static glm::dvec4 ToLook(const Sample& sample, double unit)
+  {
+    constexpr double depth = 1e-15;
+    return { sample.Value / depth, sample.Weight / depth, 0.0, sample.Weight * depth / unit };
+  }
+  /// `samples`: as TransferFunction has them.
   static std::shared_ptr<const TransferFunction> CreateFunction(
     double first, double last, const std::vector<Sample>& samples, double unit)
   {
-    // A medium that takes nothing away adds up what it emits. It is one of some extinction, though, where it counts.
-    const double extinction = 1e-15 / unit;
     std::vector<glm::dvec4> all;
     for (const Sample& sample : samples)
     {
-      all.emplace_back(
-        glm::dvec3(sample.Value, sample.Weight, 0.0) / 1e-15, sample.Weight * extinction);
+      all.push_back(ToLook(sample, unit));
     }
     return std::make_shared<const TransferFunction>(first, last, all);
   }

@@ -37,6 +37,7 @@ void ObjectDigest::Add(const ColorMap& map)
   this->Add(map.Last);
   this->Add(map.Logarithmic);
   this->Add(map.Table);
+  this->Add(map.Nodes);
   this->Add(map.Below);
   this->Add(map.Above);
   this->Add(map.NotANumber);

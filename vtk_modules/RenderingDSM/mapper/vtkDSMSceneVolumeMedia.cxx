@@ -33,13 +33,8 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
     { property, property->GetMTime(), component, range.First, range.Last },
     [&]
     {
-      auto colors = std::make_shared<rt::ColorMap>(
-        vtkDSMTranslation::ToOpaqueColors(property, component, range));
-      if (hasOpacity)
-      {
-        vtkDSMTranslation::SetOpacity(property->GetScalarOpacity(component), *colors);
-      }
-      return colors;
+      return std::make_shared<rt::ColorMap>(
+        vtkDSMTranslation::ToColorMap(property, component, range, hasOpacity));
     });
 }
 

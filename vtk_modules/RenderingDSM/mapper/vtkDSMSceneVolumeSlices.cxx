@@ -27,15 +27,11 @@ rt::SliceOf<FieldType> vtkDSMSceneVolume::CreateSlice(const vtkDSMVolumeLook& lo
     vtkPiecewiseFunction* const opacity = this->Mapper->GetSliceOpacity();
     if (opacity && this->Mapper->GetLookupTable())
     {
-      const auto& colors = slice.Look.Colors;
+      vtkScalarsToColors* const table = this->Mapper->GetLookupTable();
       slice.Look.Colors = *this->SliceColors.Get(
-        { this->SampleColors(this->Mapper->GetLookupTable()), opacity, opacity->GetMTime() },
+        { this->SampleColors(table), opacity, opacity->GetMTime() },
         [&]
-        {
-          auto map = std::make_shared<rt::ColorMap>(colors);
-          vtkDSMTranslation::SetOpacity(opacity, *map);
-          return map;
-        });
+        { return std::make_shared<rt::ColorMap>(vtkDSMTranslation::ToColorMap(table, opacity)); });
     }
   }
   return slice;

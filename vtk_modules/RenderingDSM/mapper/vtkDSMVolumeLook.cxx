@@ -182,7 +182,7 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   {
     if (isMissing)
     {
-      warnings.push_back(std::string("The volume's property specifies ") + feature +
+      warnings.push_back(std::string("The volume is to be drawn with ") + feature +
         ", which DSM Ray Tracer does not support for volumes. The volume is drawn without it. " +
         remedy);
     }
@@ -195,6 +195,10 @@ void vtkDSMVolumeLook::FindMissingFeatures(
                        "does not do. The volume is shaded by the gradient of its values. Call "
                        "ComputeNormalFromOpacityOff().");
   }
+  warn(!this->Mapper->GetOpacityArray().empty() && !this->HasOpacityArray(),
+    "opacities from another array, in this blend mode",
+    "Call SetBlendModeToComposite() or SetOpacityArray(\"\") on the mapper. In ParaView, set Blend "
+    "Mode to Composite, or turn off Use Separate Opacity Array.");
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;

@@ -4,6 +4,7 @@
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "vtkDSMCompatibility.h"
 #include "vtkDSMLightOptions.h"
+#include "vtkDSMVolumeFunctions.h"
 
 #include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
@@ -53,16 +54,6 @@ glm::vec3 ToColor(const double color[3])
   return { color[0], color[1], color[2] };
 }
 
-/// The next values beyond the ends of a map.
-double GetBelow(const rt::ColorMap& map)
-{
-  return std::nextafter(map.First, -std::numeric_limits<double>::infinity());
-}
-double GetAbove(const rt::ColorMap& map)
-{
-  return std::nextafter(map.Last, std::numeric_limits<double>::infinity());
-}
-
 glm::vec4 MapValue(vtkScalarsToColors* table, double value)
 {
   double color[3];
@@ -89,136 +80,6 @@ std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
     [](const auto& a, const auto& b) { return a.Value < b.Value; });
   return categories;
 }
-
-/// Widens a range of a single value.
-void Widen(double& first, double& last)
-{
-  if (!(first < last))
-  {
-    const double half = std::max(1.0, std::abs(first)) * 1e-3;
-    first -= half;
-    last += half;
-  }
-}
-
-/// The color and opacity functions of a volume property's component. Keeps references.
-class VolumeFunctions
-{
-public:
-  VolumeFunctions(vtkVolumeProperty* property, int component)
-    : Opacity(property->GetScalarOpacity(component))
-  {
-    // To ask for the other one would make it the one that counts.
-    if (property->GetColorChannels(component) == 1)
-    {
-      this->Gray = property->GetGrayTransferFunction(component);
-    }
-    else
-    {
-      this->Colors = property->GetRGBTransferFunction(component);
-    }
-  }
-
-  /// If both functions are clamped, limits a range of values to that of the functions. The result
-  /// is never empty.
-  void Narrow(double& first, double& last) const
-  {
-    const bool areClamped = this->Opacity->GetClamping() != 0 &&
-      (this->Gray ? this->Gray->GetClamping() : this->Colors->GetClamping()) != 0;
-    if (areClamped)
-    {
-      const double* const ofColors = this->Gray ? this->Gray->GetRange() : this->Colors->GetRange();
-      const double* const ofOpacity = this->Opacity->GetRange();
-      const double low = std::max(first, std::min(ofColors[0], ofOpacity[0]));
-      const double high = std::min(last, std::max(ofColors[1], ofOpacity[1]));
-      first = low < high ? low : first;
-      last = low < high ? high : last;
-    }
-    Widen(first, last);
-  }
-
-  /// Returns whether the functions are spread over the decades of values from `first` on.
-  bool AreLogarithmic(double first) const
-  {
-    return first > 0.0 && (this->Opacity->GetUseLogScale() || this->HasLogColors());
-  }
-
-  /// How many bins of a range of values the functions need: the lowest decade gets some, too.
-  int CountBins(double first, double last) const
-  {
-    constexpr double inLowest = 64.0;
-    constexpr int most = 1 << 18;
-    int bins = rt::TransferFunction::Bins;
-    while (
-      this->AreLogarithmic(first) && 9.0 * first * bins < inLowest * (last - first) && bins < most)
-    {
-      bins *= 2;
-    }
-    return bins;
-  }
-
-  /// Colors (not premultiplied) and opacities (w) of so many values, evenly spaced from `first` to `last`.
-  std::vector<glm::dvec4> Sample(double first, double last, int count) const
-  {
-    const std::size_t channels = this->Gray ? 1 : 3;
-    std::vector<double> opacities(static_cast<std::size_t>(count));
-    std::vector<double> colors(channels * opacities.size());
-    this->Opacity->GetTable(first, last, count, opacities.data());
-    if (this->Gray)
-    {
-      this->Gray->GetTable(first, last, count, colors.data());
-    }
-    else if (count > 1 && first > 0.0 && this->HasLogColors())
-    {
-      this->SampleLogColors(first, last, colors);
-    }
-    else
-    {
-      this->Colors->GetTable(first, last, count, colors.data());
-    }
-    std::vector<glm::dvec4> samples;
-    for (std::size_t sample = 0; sample < opacities.size(); ++sample)
-    {
-      const double* const own = &colors[channels * sample];
-      samples.emplace_back(
-        own[0], own[this->Gray ? 0 : 1], own[this->Gray ? 0 : 2], opacities[sample]);
-    }
-    return samples;
-  }
-
-private:
-  bool HasLogColors() const
-  {
-    return this->Colors && this->Colors->GetScale() == VTK_CTF_LOG10 &&
-      this->Colors->GetRange()[0] > 0.0;
-  }
-
-  /// Tables of such colors are spaced evenly in the logarithm of the value.
-  void SampleLogColors(double first, double last, std::vector<double>& colors) const
-  {
-    std::vector<double> table(std::size_t{ 3 } * ColorMapEntries);
-    this->Colors->GetTable(first, last, ColorMapEntries, table.data());
-    const std::size_t count = colors.size() / 3;
-    const double scale = (ColorMapEntries - 1) / std::log(last / first);
-    for (std::size_t sample = 0; sample < count; ++sample)
-    {
-      const double part = static_cast<double>(sample) / static_cast<double>(count - 1);
-      const double place = scale * std::log(1.0 + part * (last / first - 1.0));
-      const auto entry = static_cast<std::size_t>(
-        std::clamp(std::floor(place), 0.0, static_cast<double>(ColorMapEntries - 2)));
-      const double rest = place - static_cast<double>(entry);
-      for (std::size_t channel = 0; channel < 3; ++channel)
-      {
-        const double* const own = &table[3 * entry + channel];
-        colors[3 * sample + channel] = own[0] + rest * (own[3] - own[0]);
-      }
-    }
-  }
-
-  vtkPiecewiseFunction* Opacity;
-  vtkPiecewiseFunction* Gray = nullptr;
-  vtkColorTransferFunction* Colors = nullptr;
-};
 
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
@@ -285,15 +146,8 @@ rt::EdgeLines vtkDSMTranslation::ToEdgeLines(vtkProperty* property)
 
 rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double isovalue)
 {
-  double color[3];
-  if (property->GetColorChannels(0) == 1)
-  {
-    std::fill_n(color, 3, property->GetGrayTransferFunction(0)->GetValue(isovalue));
-  }
-  else
-  {
-    property->GetRGBTransferFunction(0)->GetColor(isovalue, color);
-  }
+  const glm::dvec4 look = vtkDSMVolumeFunctions(property, 0).GetLook(isovalue);
+  const glm::vec3 color(look);
   rt::Material material;
   material.Lighting = property->GetShade(0) != 0;
   // Without shading, the transfer function's color as it is.
@@ -301,9 +155,9 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
   material.Diffuse = material.Lighting ? static_cast<float>(property->GetDiffuse(0)) : 0.0f;
   material.Specular = static_cast<float>(property->GetSpecular(0));
   material.SpecularPower = static_cast<float>(property->GetSpecularPower(0));
-  material.AmbientColor = ToColor(color);
-  material.DiffuseColor = ToColor(color);
-  material.Opacity = static_cast<float>(property->GetScalarOpacity(0)->GetValue(isovalue));
+  material.AmbientColor = color;
+  material.DiffuseColor = color;
+  material.Opacity = static_cast<float>(look.w);
   return material;
 }
 
@@ -311,18 +165,19 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunctio
   vtkVolumeProperty* property, int component, double weight, double first, double last,
   double cellLength, double diagonal)
 {
-  const VolumeFunctions functions(property, component);
+  const vtkDSMVolumeFunctions functions(property, component);
   functions.Narrow(first, last);
-  std::vector<glm::dvec4> samples =
-    functions.Sample(first, last, functions.CountBins(first, last) + 1);
   const double unit = property->GetScalarOpacityUnitDistance(component);
-  for (glm::dvec4& sample : samples)
+  const auto look = [&](double value)
   {
-    // Skip values that are invisible even if the whole length of a ray has them.
+    glm::dvec4 sample = functions.GetLook(value);
     const double extinction = -weight * std::log1p(-std::clamp(sample.w, 0.0, MostOpacity)) / unit;
+    // Skip values that are invisible even if the whole length of a ray has them.
     sample.w = extinction * diagonal < LeastDepth ? 0.0 : extinction;
-  }
-  return std::make_shared<const rt::TransferFunction>(first, last, samples, cellLength);
+    return sample;
+  };
+  return rt::TransferFunction::Create(
+    first, last, look, functions.GetNodes(), LeastDepth / diagonal, cellLength);
 }
 
 rt::MediumLook vtkDSMTranslation::ToMediumLook(
@@ -354,36 +209,32 @@ rt::MediumLook vtkDSMTranslation::ToMediumLook(
 std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
   vtkVolumeProperty* property, int component, double first, double last)
 {
-  const VolumeFunctions functions(property, component);
+  const vtkDSMVolumeFunctions functions(property, component);
   functions.Narrow(first, last);
   auto map = std::make_shared<rt::ColorMap>();
   map->First = first;
   map->Last = last;
   map->Logarithmic = functions.AreLogarithmic(first);
-  map->Table.resize(ColorMapEntries);
-  for (std::size_t entry = 0; entry < map->Table.size(); ++entry)
-  {
-    const double value = map->GetValue(entry);
-    map->Table[entry] = functions.Sample(value, value, 1).front();
-  }
-  map->Below = map->Table.front();
-  map->Above = map->Table.back();
+  map->Sample(
+    ColorMapEntries, [&](double value) { return functions.GetLook(value); }, functions.GetNodes());
+  map->Below = functions.GetLook(first);
+  map->Above = functions.GetLook(last);
   return map;
 }
 
-rt::ColorMap vtkDSMTranslation::ToOpaqueColors(
-  vtkVolumeProperty* property, int component, const bricks::ValueRange& range)
+rt::ColorMap vtkDSMTranslation::ToColorMap(
+  vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity)
 {
+  vtkPiecewiseFunction* const opacity =
+    hasOpacity ? property->GetScalarOpacity(component) : nullptr;
   // To ask for the other one would make it the one that counts.
   rt::ColorMap map = property->GetColorChannels(component) == 1
     ? *ToColorMap(property, component, range.First, range.Last)
-    : ToColorMap(property->GetRGBTransferFunction(component));
-  for (glm::vec4& color : map.Table)
+    : ToColorMap(property->GetRGBTransferFunction(component), opacity);
+  if (!hasOpacity)
   {
-    color.w = 1.0f;
+    map.SetOpaque();
   }
-  map.Below.w = 1.0f;
-  map.Above.w = 1.0f;
   map.NotANumber = glm::vec4(0.0f);
   return map;
 }
@@ -391,20 +242,21 @@ rt::ColorMap vtkDSMTranslation::ToOpaqueColors(
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToSum(vtkVolumeProperty* property,
   double first, double last, const std::array<double, 2>& counted, double unit)
 {
-  Widen(first, last);
-  const VolumeFunctions functions(property, 0);
-  const int bins = functions.CountBins(first, last);
-  const std::vector<glm::dvec4> looks = functions.Sample(first, last, bins + 1);
-  std::vector<rt::LatticeSum::Sample> samples;
-  for (const glm::dvec4& look : looks)
+  // As VTK's mapper for floats, a value that is the only one counts as the smallest one.
+  const double smallest = first;
+  const double range = last > first ? last - first : 1.0;
+  vtkDSMVolumeFunctions::Widen(first, last);
+  const vtkDSMVolumeFunctions functions(property, 0);
+  std::vector<double> nodes = functions.GetNodes();
+  nodes.insert(nodes.end(), counted.begin(), counted.end());
+  const auto look = [&](double value)
   {
-    const double part = static_cast<double>(samples.size()) / bins;
-    const double value = first + part * (last - first);
     const bool counts =
       std::min(counted[0], counted[1]) <= value && value <= std::max(counted[0], counted[1]);
-    samples.push_back({ look.w * part, counts ? 1.0 : 0.0 });
-  }
-  return rt::LatticeSum::CreateFunction(first, last, samples, unit);
+    const double part = std::max(value - smallest, 0.0) / range;
+    return rt::LatticeSum::ToLook({ functions.GetLook(value).w * part, counts ? 1.0 : 0.0 }, unit);
+  };
+  return rt::TransferFunction::Create(first, last, look, nodes, 0.0, 0.0);
 }
 
 std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
@@ -443,16 +295,39 @@ std::shared_ptr<const rt::Texture> vtkDSMTranslation::ToTexture(
   return picture;
 }
 
-rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
+rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table, vtkPiecewiseFunction* opacity)
 {
   table->Build();
+  auto* const colors = vtkColorTransferFunction::SafeDownCast(table);
+  const auto look = [&](double value)
+  {
+    glm::vec4 color =
+      MapValue(table, colors ? vtkDSMVolumeFunctions::ToKnown(colors, value) : value);
+    if (opacity)
+    {
+      color.w =
+        static_cast<float>(std::clamp(vtkDSMVolumeFunctions::GetValue(opacity, value), 0.0, 1.0));
+    }
+    return color;
+  };
   rt::ColorMap map;
   const double* range = table->GetRange();
   map.First = range[0];
   map.Last = range[1];
+  std::vector<double> nodes(range, range + 2);
+  if (colors)
+  {
+    vtkDSMVolumeFunctions::AddNodes(colors, nodes);
+  }
+  if (opacity && opacity->GetSize() > 0)
+  {
+    vtkDSMVolumeFunctions::AddNodes(opacity, nodes);
+    map.First = std::min(map.First, opacity->GetRange()[0]);
+    map.Last = std::max(map.Last, opacity->GetRange()[1]);
+  }
   map.Logarithmic = table->UsingLogScale() != 0 && map.First > 0.0;
-  map.Below = MapValue(table, GetBelow(map));
-  map.Above = MapValue(table, GetAbove(map));
+  map.Below = look(std::nextafter(map.First, -std::numeric_limits<double>::infinity()));
+  map.Above = look(std::nextafter(map.Last, std::numeric_limits<double>::infinity()));
   map.NotANumber = MapValue(table, vtkMath::Nan());
   // Only this way of mapping knows the opacity.
   double nan = vtkMath::Nan();
@@ -462,33 +337,14 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table)
   if (table->GetIndexedLookup())
   {
     map.Categories = ToCategories(table);
-    return map;
-  }
-  map.Table.resize(ColorMapEntries);
-  for (std::size_t entry = 0; entry < map.Table.size(); ++entry)
-  {
-    map.Table[entry] = MapValue(table, map.GetValue(entry));
-  }
-  return map;
-}
-
-void vtkDSMTranslation::SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map)
-{
-  const auto get = [&](double value)
-  { return static_cast<float>(std::clamp(opacity->GetValue(value), 0.0, 1.0)); };
-  for (std::size_t entry = 0; entry < map.Table.size(); ++entry)
-  {
-    map.Table[entry].w = get(map.GetValue(entry));
-  }
-  map.Below.w = get(GetBelow(map));
-  map.Above.w = get(GetAbove(map));
-  if (map.Categories)
-  {
     for (rt::ColorMap::Category& category : *map.Categories)
     {
-      category.Color.w = get(category.Value);
+      category.Color.w = opacity ? look(category.Value).w : category.Color.w;
     }
+    return map;
   }
+  map.Sample(ColorMapEntries, look, nodes);
+  return map;
 }
 
 rt::ClipRegion vtkDSMTranslation::ToClipRegion(vtkAbstractMapper* mapper)

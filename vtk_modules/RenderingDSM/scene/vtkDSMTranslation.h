@@ -38,11 +38,10 @@ public:
   /// the texture has no picture of bytes.
   static std::shared_ptr<const rt::Texture> ToTexture(vtkTexture* texture, vtkMatrix4x4* transform);
 
-  /// Samples any lookup table or transfer function; finely enough for one that is discretised.
-  static rt::ColorMap ToColorMap(vtkScalarsToColors* table);
-
-  /// Gives all colors of a map the opacities of their values, but that of what is not a number.
-  static void SetOpacity(vtkPiecewiseFunction* opacity, rt::ColorMap& map);
+  /// Samples any lookup table or transfer function. `opacity`: gives the opacities of the values,
+  /// but that of what is not a number; null: the table does.
+  static rt::ColorMap ToColorMap(
+    vtkScalarsToColors* table, vtkPiecewiseFunction* opacity = nullptr);
 
   /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values are
   /// from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in
@@ -55,10 +54,10 @@ public:
   /// The same functions as colors and opacities of single values.
   static std::shared_ptr<const rt::ColorMap> ToColorMap(
     vtkVolumeProperty* property, int component, double first, double last);
-  /// The color function alone, as the legend of a property's component shows it, for values of a range. What is not a
-  /// number is transparent.
-  static rt::ColorMap ToOpaqueColors(
-    vtkVolumeProperty* property, int component, const bricks::ValueRange& range);
+  /// The color function, as the legend of a property's component shows it, for values of a range,
+  /// with the opacities of the same values or opaque. What is not a number is transparent.
+  static rt::ColorMap ToColorMap(
+    vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity);
   /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of length. In a mean,
   /// the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,

@@ -322,7 +322,7 @@ private:
     found = { hn::Load(tag, extinctions), hn::Load(tag, changes), hn::Load(tag, tinges) };
   }
 
-  /// TransferFunction::Integrate, and what it says of the slope.
+  /// TransferFunction::Integrate, and what it says of the slope; not a number in divided bins.
   HWY_INLINE Row Integrate(const Located& places, int lane) const
   {
     const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
@@ -333,6 +333,15 @@ private:
   {
     const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
     return Row(bin.Begin) + Row(bin.Growth) * Row(places.Way[lane]);
+  }
+  /// The growth of the integral between two places, or the slope at the second one where `isShort`,
+  /// in any bins. `integral`: becomes that up to the second one.
+  HWY_NOINLINE Lanes IntegrateParts(double start, double stop, bool isShort, Lanes& integral) const
+  {
+    Lanes slope;
+    const Lanes before = this->Function.Integrate(start, slope);
+    integral = this->Function.Integrate(stop, slope);
+    return isShort ? slope : integral - before;
   }
 
   /// Goes on to where piece `number` ends, for those of `lanes` that have as many. Returns those that are dark.
@@ -374,13 +383,28 @@ private:
       (growth * Row(factors[lane])).Store(amounts[lane]);
       integral.Store(pieces.Integral[lane]);
       depths[lane] = amounts[lane].High[1];
-      some |= std::uint32_t{ depths[lane] > 0.0 } << lane;
+      some |= std::uint32_t{ !(depths[lane] <= 0.0) } << lane;
     }
     if (some == 0)
     {
       return 0;
     }
-    const Vector depth = hn::Load(tag, depths);
+    Vector depth = hn::Load(tag, depths);
+    const std::uint32_t divided = GetMaskBits(tag, hn::IsNaN(depth));
+    if (HWY_UNLIKELY(divided != 0))
+    {
+      for (std::uint32_t left = divided & some; left != 0; left &= left - 1)
+      {
+        const int lane = __builtin_ctz(left);
+        const bool isShort = (shortOnes >> lane & 1) != 0;
+        const Lanes growth =
+          this->IntegrateParts(starts[lane], stops[lane], isShort, pieces.Integral[lane]);
+        amounts[lane] = growth * Lanes(factors[lane]);
+        depths[lane] = amounts[lane][3];
+        some &= ~(std::uint32_t{ !(depths[lane] > 0.0) } << lane);
+      }
+      depth = hn::Load(tag, depths);
+    }
     const Vector passed = GetTransmittance(depth);
     // (1 - exp(-depth)) / depth
     const Vector thin = hn::Sub(one, hn::Mul(hn::Set(tag, 0.5), depth));
