@@ -89,13 +89,21 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
   const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
   const double diagonal = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
+  auto& makers = this->MediumMakers[number];
+  auto known = std::move(makers);
+  makers.clear();
   this->ForEachField(array, dataToWorld,
     [&](const auto& field, std::size_t part)
     {
       using FieldType = std::decay_t<decltype(field)>;
       const auto key = look.GetMediumKey(range, field.GetFinestLength(), diagonal, component);
-      const auto& make =
-        this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
+      makers.insert(known.extract(key));
+      const auto [entry, isNew] = makers.try_emplace(key);
+      if (isNew)
+      {
+        entry->second = vtkDSMVolumeLook::GetMediumMaker(key);
+      }
+      const auto& make = entry->second;
       if (!make)
       {
         this->Messages.push_back(
