@@ -73,6 +73,98 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeAllKinds()
   return blocks;
 }
 
+/// Cells of a cube of 16^3 that are 2 long: those from `first` to before `last` on x, of which those before `own` and from
+/// `end` on are ghosts. They hold the distances of their centers.
+struct Slab
+{
+  int First;
+  int Last;
+  int Own;
+  int End;
+};
+
+template <class Grid>
+void SetValues(Grid* grid, const Slab& slab)
+{
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("distance");
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (int k = 0; k < 16; ++k)
+  {
+    for (int j = 0; j < 16; ++j)
+    {
+      for (int i = slab.First; i < slab.Last; ++i)
+      {
+        values->InsertNextValue(GetDistance(dvec3(2 * i - 15, 2 * j - 15, 2 * k - 15)));
+        const bool isOwn = i >= slab.Own && i < slab.End;
+        ghosts->InsertNextValue(isOwn ? 0 : vtkDataSetAttributes::DUPLICATECELL);
+      }
+    }
+  }
+  grid->GetCellData()->AddArray(values);
+  grid->GetCellData()->AddArray(ghosts);
+}
+
+vtkSmartPointer<vtkDataSet> MakeCells(bool isRectilinear, const Slab& slab, double shift = 0.0)
+{
+  const int extent[6] = { 0, slab.Last - slab.First, 0, 16, 0, 16 };
+  const double corner = 2 * slab.First - 16 + shift;
+  if (!isRectilinear)
+  {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetExtent(const_cast<int*>(extent));
+    image->SetOrigin(corner, -16.0, -16.0);
+    image->SetSpacing(2.0, 2.0, 2.0);
+    SetValues(image.Get(), slab);
+    return image;
+  }
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  grid->SetExtent(const_cast<int*>(extent));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    vtkNew<vtkDoubleArray> planes;
+    for (int plane = 0; plane <= extent[2 * axis + 1]; ++plane)
+    {
+      planes->InsertNextValue((axis == 0 ? corner : -16.0) + 2.0 * plane);
+    }
+    axis == 0     ? grid->SetXCoordinates(planes)
+      : axis == 1 ? grid->SetYCoordinates(planes)
+                  : grid->SetZCoordinates(planes);
+  }
+  SetValues(grid.Get(), slab);
+  return grid;
+}
+
+/// What cells' values are at points, as Cell Data to Point Data has them: the means of the cells around. Of the points from
+/// `first` to `last` on x.
+vtkSmartPointer<vtkImageData> MakeMeans(int first, int last)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(first, last, 0, 16, 0, 16);
+  image->SetOrigin(-16.0, -16.0, -16.0);
+  image->SetSpacing(2.0, 2.0, 2.0);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("distance");
+  for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
+  {
+    dvec3 place;
+    image->GetPoint(point, &place.x);
+    double sum = 0.0;
+    int count = 0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const dvec3 cell = place + 2.0 * dvec3(corner & 1, corner >> 1 & 1, corner >> 2) - 1.0;
+      const bool isThere = glm::all(glm::lessThan(glm::abs(cell), dvec3(16.0)));
+      sum += isThere ? GetDistance(cell) : 0.0;
+      count += isThere ? 1 : 0;
+    }
+    values->InsertNextValue(sum / count);
+  }
+  image->GetPointData()->AddArray(values);
+  return image;
+}
+
 } // namespace
 
 class VolumeMapperBlocks : public VolumeMapperLevels
@@ -158,6 +250,44 @@ TEST_F(VolumeMapperBlocks, BlocksOfAllKindsShowWhatTheyShowApart)
   this->Volume->GetProperty()->SetColor(color);
   this->Volume->GetProperty()->SetInterpolationTypeToLinear();
   this->ExpectSameAsApart(blocks, 1);
+}
+
+TEST_F(VolumeMapperBlocks, GhostCellsCountInTheMeansAtPoints)
+{
+  const auto expectSame = [&](const std::vector<double>& one, const std::vector<double>& other)
+  {
+    EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+    EXPECT_GT(CountCovered(other), 2000);
+    int different = 0;
+    for (std::size_t pixel = 0; pixel < one.size(); ++pixel)
+    {
+      const bool isSame = one[pixel] == other[pixel] || std::abs(one[pixel] - other[pixel]) < 0.02;
+      different += isSame ? 0 : 1;
+    }
+    EXPECT_LE(different, 200); // at silhouettes
+  };
+  const std::vector<double> half = this->Render(MakeMeans(0, 8));
+  const std::vector<double> whole = this->Render(MakeMeans(0, 16));
+  this->Mapper->SetIsoArrayOnCells(true);
+  for (const bool isRectilinear : { false, true })
+  {
+    SCOPED_TRACE(isRectilinear);
+    expectSame(this->Render(MakeCells(isRectilinear, { 0, 9, 0, 8 })), half);
+    // The second block may be a little beside the first one's place, or too far for one volume.
+    for (const double shift : { 0.0, 1e-6, 3e-3 })
+    {
+      SCOPED_TRACE(shift);
+      vtkNew<vtkMultiBlockDataSet> blocks;
+      blocks->SetBlock(0, MakeCells(isRectilinear, { 0, 9, 0, 8 }));
+      blocks->SetBlock(1, MakeCells(isRectilinear, { 7, 16, 8, 16 }, shift));
+      expectSame(this->Render(blocks), whole);
+    }
+  }
+  // Without ghosts, blocks whose planes differ by little have to meet.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakeCells(true, { 0, 8, 0, 8 }));
+  blocks->SetBlock(1, MakeCells(true, { 8, 16, 8, 16 }, 1e-6));
+  expectSame(this->Render(blocks), whole);
 }
 
 TEST_F(VolumeMapperBlocks, HyperTreeGridsAreOneWhereTheirRootsAre)

@@ -2,11 +2,14 @@
 // Translucent geometry of VTK inside a medium, against the analytic color.
 #include "VolumeMapperTest.h"
 
+#include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
+#include "vtkNonOverlappingAMR.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlaneSource.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
+#include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
@@ -166,6 +169,32 @@ private:
     return color + left * glm::dvec3(0.1, 0.2, 0.3);
   }
 
+protected:
+  /// The same box as AMR, finer in the middle.
+  static vtkSmartPointer<vtkNonOverlappingAMR> MakeLevels()
+  {
+    auto amr = vtkSmartPointer<vtkNonOverlappingAMR>::New();
+    const int counts[] = { 1, 1 };
+    amr->Initialize(2, counts);
+    for (unsigned int level = 0; level < 2; ++level)
+    {
+      const double spacing = level == 0 ? 2.0 : 1.0;
+      const double half = level == 0 ? 16.0 : 8.0;
+      vtkNew<vtkUniformGrid> grid;
+      grid->SetDimensions(17, 17, 17);
+      grid->SetOrigin(-half, -half, -0.5 * half);
+      grid->SetSpacing(spacing, spacing, 0.5 * spacing);
+      vtkNew<vtkDoubleArray> values;
+      values->SetName("distance");
+      values->SetNumberOfTuples(grid->GetNumberOfCells());
+      values->FillComponent(0, 0.5);
+      grid->GetCellData()->AddArray(values);
+      amr->SetDataSet(level, 0, grid);
+    }
+    return amr;
+  }
+
+private:
   inline static const glm::dvec3 FogColor{ 0.9, 0.5, 0.1 };
   static constexpr double FogOpacity = 0.05;
   double Bounds[6];
@@ -187,6 +216,8 @@ TEST_F(VolumeMapperFog, TranslucentGeometryIsWhereItIsInAMedium)
       { { -5.0, -9.0, z }, { { 9.0, 0.0, 0.0 }, { 0.0, 18.0, 0.0 } }, { 1.0, 1.0, 1.0 }, 0.2 });
   }
   EXPECT_LT(this->GetError(), 1.5) << "more than are told apart";
+  this->Mapper->SetInputDataObject(MakeLevels());
+  EXPECT_LT(this->GetError(), 1.5) << "in AMR";
   this->Scene->SetInteractiveReduction(4);
   this->Window->SetDesiredUpdateRate(10.0);
   EXPECT_LT(this->GetError(), 4.0) << "while the camera moves";

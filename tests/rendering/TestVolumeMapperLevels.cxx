@@ -194,6 +194,35 @@ TEST_F(VolumeMapperLevels, StandsInForAmrVolumeMapper)
   EXPECT_EQ(copy->GetNumberOfSamples()[2], 256);
 }
 
+TEST_F(VolumeMapperLevels, LitMediaOfAmrLookAsThoseOfAnImage)
+{
+  const auto image = MakeBall();
+  vtkNew<vtkUniformGrid> block;
+  block->ShallowCopy(image);
+  vtkNew<vtkNonOverlappingAMR> amr;
+  const int counts[] = { 1 };
+  amr->Initialize(1, counts);
+  amr->SetDataSet(0, 0, block);
+  this->Mapper->SetNumberOfIsoValues(0);
+  vtkVolumeProperty* const property = this->Volume->GetProperty();
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.05);
+  opacity->AddPoint(1.0, 0.05);
+  property->SetScalarOpacity(opacity);
+  property->SetInterpolationType(VTK_LINEAR_INTERPOLATION);
+  property->GetRGBTransferFunction(0)->AddRGBPoint(0.0, 1.0, 1.0, 1.0);
+  vtkNew<vtkPiecewiseFunction> gradients;
+  gradients->AddPoint(0.005, 0.0);
+  gradients->AddPoint(0.03, 1.0);
+  property->SetGradientOpacity(gradients);
+  property->ShadeOn();
+  const std::vector<unsigned char> levels = this->Draw(amr);
+  const std::vector<unsigned char> lattice = this->Draw(image);
+  EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+  EXPECT_GT(Compare(levels, std::vector<unsigned char>(levels.size())), 10.0);
+  EXPECT_LT(Compare(levels, lattice), 0.02);
+}
+
 TEST_F(VolumeMapperLevels, TranslucentSurfacesOfAmrLookAsThoseOfAnImage)
 {
   const auto amr =

@@ -153,10 +153,10 @@ void ExpectAverages(dsm::Messenger& messenger, int hidden, bool isFirstMissing, 
       pieces.push_back({ getOwner(number), true, hidden > 0, box, part->GetReach() });
       if (pieces.back().Rank == messenger.GetRank())
       {
-        own[number] = std::make_shared<bricks::CellAverages>(part, volume.Cells);
+        own[number] = std::make_shared<bricks::CellAverages>(part);
       }
     }
-    bricks::CellExchange::Run(messenger, "Averaging", volume.Cells, pieces, own);
+    bricks::CellExchange::Run(messenger, "Averaging", pieces, own);
     // A cell of the missing piece that none has a copy of is nowhere.
     bricks::Box unknown = missing;
     if (hasCopies && !missing.IsEmpty())

@@ -243,8 +243,7 @@ std::vector<double> Average(vtkImageData* image, vtkDataArray* array, int compon
   const bricks::PieceInfo info = vtkDSMImagePiece::Describe(image, 0);
   const bricks::LatticePlan::Member place = MakePlace(info);
   const bricks::CellAverages averages(
-    std::make_shared<vtkDSMCellPiece>(image, array, component, place, info.HasMask != 0),
-    place.Cells);
+    std::make_shared<vtkDSMCellPiece>(image, array, component, place, info.HasMask != 0));
   const bricks::Box points{ place.Cells.Min, place.Cells.Max + bricks::Index3(1) };
   const bricks::ScalarType type = vtkDSMImagePiece::GetScalarType(array, component);
   std::vector<std::byte> samples(

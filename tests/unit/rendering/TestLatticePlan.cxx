@@ -6,6 +6,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -164,6 +165,31 @@ TEST(LatticePlan, RectilinearPiecesOfOtherPlanesStayApart)
   EXPECT_EQ(grids.Plan().GetLattices().size(), 4u);
   grids.Coordinates.front()[2][1] = 9.0;
   EXPECT_THROW(grids.Plan(), dsm::Error);
+}
+
+TEST(LatticePlan, RectilinearPiecesMeetWherePlanesDifferByLittle)
+{
+  // As CTH writes them: multiples in single precision.
+  Grids grids;
+  grids.Add({ 0.0909091, 0.09090924, 0.0909094 }, 0, 2, 0, 2);
+  grids.Add({ 0.0, 0.04545455, 0.09090909 }, 0, 2, 0, 1);
+  EXPECT_EQ(grids.Plan().GetLattices().size(), 2u); // that is a tenth of the small cell
+
+  grids = {};
+  grids.Add({ 0.09090924, 0.13636364, 0.18181818 }, 0, 2, 0, 2);
+  grids.Add({ 0.0, 0.04545455, 0.09090909 }, 0, 2, 0, 1);
+  for (const bool isReversed : { false, true })
+  {
+    const bricks::LatticePlan plan = grids.Plan();
+    ASSERT_EQ(plan.GetLattices().size(), 1u) << isReversed;
+    const auto& lattice = plan.GetLattices()[0];
+    EXPECT_EQ(lattice.Points, bricks::Index3(5, 3, 3));
+    // The block of the lower number counts, whatever the order of the pieces.
+    const glm::dvec4 place(lattice.Planes->GetPlace(0, 2), 0.0, 0.0, 1.0);
+    EXPECT_NEAR((lattice.IndexToWorld * place).x, 0.09090909, 1e-12);
+    std::reverse(grids.Pieces.begin(), grids.Pieces.end());
+    std::reverse(grids.Coordinates.begin(), grids.Coordinates.end());
+  }
 }
 
 TEST(LatticePlan, FlatDataAreRefusedByAxis)

@@ -89,38 +89,33 @@ inline double Add(const Around& around, double weight)
 
 } // namespace
 
-CellAverages::CellAverages(std::shared_ptr<const CellReader> piece, const Box& cells)
+CellAverages::CellAverages(std::shared_ptr<const CellReader> piece)
   : Piece(std::move(piece))
 {
-  for (const Box& box : GetLayer(this->Piece->GetCells(), cells))
+  for (const Box& box : GetLayer(this->Piece->GetCells()))
   {
     this->Layer.push_back({ box, {}, {}, {} });
   }
 }
 
-std::vector<Box> CellAverages::GetLayer(const Box& piece, const Box& lattice)
+std::vector<Box> CellAverages::GetLayer(const Box& piece)
 {
   std::vector<Box> layer;
   if (piece.IsEmpty())
   {
     return layer;
   }
-  Box rest = Intersect({ piece.Min - Index3(1), piece.Max + Index3(1) }, lattice);
+  Box rest{ piece.Min - Index3(1), piece.Max + Index3(1) };
   for (int axis = 0; axis < 3; ++axis)
   {
     Box below = rest;
     Box above = rest;
     below.Max[axis] = piece.Min[axis];
     above.Min[axis] = piece.Max[axis];
-    for (const Box& box : { below, above })
-    {
-      if (!box.IsEmpty())
-      {
-        layer.push_back(box);
-      }
-    }
-    rest.Min[axis] = std::max(rest.Min[axis], piece.Min[axis]);
-    rest.Max[axis] = std::min(rest.Max[axis], piece.Max[axis]);
+    layer.push_back(below);
+    layer.push_back(above);
+    rest.Min[axis] = piece.Min[axis];
+    rest.Max[axis] = piece.Max[axis];
   }
   return layer;
 }

@@ -19,8 +19,8 @@ namespace bricks
 class CellAverages final : public VoxelSource
 {
 public:
-  /// `cells`: all of the lattice. Cells around the piece count once they are added.
-  CellAverages(std::shared_ptr<const CellReader> piece, const Box& cells);
+  /// Cells around the piece count once they are added.
+  explicit CellAverages(std::shared_ptr<const CellReader> piece);
 
   Box GetCells() const override { return this->Piece->GetCells(); }
   void ReadSamples(const Box& points, std::byte* out) const override;
@@ -28,8 +28,9 @@ public:
   void ReadCellMask(const Box& cells, std::uint8_t* out) const override;
 
   const CellReader& GetPiece() const { return *this->Piece; }
-  /// The layer of cells around a piece, as boxes that do not overlap; without cells outside of the lattice.
-  static std::vector<Box> GetLayer(const Box& piece, const Box& lattice);
+  /// The layer of cells around a piece, as boxes that do not overlap. It has cells outside of the lattice, too: ghost cells
+  /// may be copies of cells that lie in no lattice, or in another one.
+  static std::vector<Box> GetLayer(const Box& piece);
   /// Adds neighboring cells, which lie within one box of the layer, of a piece of that number: their states, then their
   /// values, component by component, in native byte order. For each cell the lowest piece counts that has it, or else
   /// that has a copy of it. Throws dsm::Error where they do not fit.

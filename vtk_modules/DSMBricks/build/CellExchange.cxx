@@ -42,7 +42,7 @@ struct Header
 class TransferList
 {
 public:
-  TransferList(const Box& lattice, const Pieces& pieces, const OwnPieces& own)
+  TransferList(const Pieces& pieces, const OwnPieces& own)
   {
     for (std::size_t to = 0; to < pieces.size(); ++to)
     {
@@ -54,7 +54,7 @@ public:
       {
         continue;
       }
-      const std::vector<Box> layer = CellAverages::GetLayer(cells, lattice);
+      const std::vector<Box> layer = CellAverages::GetLayer(cells);
       std::optional<std::vector<Box>> whole; // cells that are surely somebody's
       for (const auto& [from, unused] : own)
       {
@@ -196,7 +196,7 @@ void Absorb(const OwnPieces& own, const std::byte* bytes, std::size_t count)
 
 } // namespace
 
-void CellExchange::Run(dsm::Messenger& messenger, std::string_view what, const Box& lattice,
+void CellExchange::Run(dsm::Messenger& messenger, std::string_view what,
   const std::vector<Piece>& pieces, const std::map<std::size_t, std::shared_ptr<CellAverages>>& own)
 {
   std::optional<TransferList> transfers;
@@ -204,7 +204,7 @@ void CellExchange::Run(dsm::Messenger& messenger, std::string_view what, const B
   messenger.RunTogether(what,
     [&]
     {
-      transfers.emplace(lattice, pieces, own);
+      transfers.emplace(pieces, own);
       const int ranks = messenger.GetSize();
       directory.emplace(std::vector<std::uint32_t>(static_cast<std::size_t>(ranks), 0),
         dsm::RoundRobinAssigner(ranks));

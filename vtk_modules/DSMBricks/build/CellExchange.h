@@ -15,7 +15,7 @@
 namespace bricks
 {
 
-/// Gives every piece of a lattice the values of the cells around it, which other pieces have.
+/// Gives every piece of a lattice the values of the cells around it, which other pieces have, or which ghost cells copy.
 namespace CellExchange
 {
 
@@ -32,8 +32,7 @@ struct Piece
 /// Collective. `own`: this rank's, by number of piece; all that are used. A layer goes only to the ranks of the pieces
 /// beside it. Ghost cells are sent only where no piece has the cells. Throws the same dsm::Error on every rank when any
 /// fails.
-void Run(dsm::Messenger& messenger, std::string_view what, const Box& lattice,
-  const std::vector<Piece>& pieces,
+void Run(dsm::Messenger& messenger, std::string_view what, const std::vector<Piece>& pieces,
   const std::map<std::size_t, std::shared_ptr<CellAverages>>& own);
 
 } // namespace CellExchange

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -19,8 +20,8 @@ namespace bricks
 namespace
 {
 
-/// Two pieces share sampling points when their origins differ by whole cells, within this part of
-/// one: files keep origins in single precision, too.
+/// Two pieces share sampling points when these differ by whole cells, within this part of one: files keep origins and
+/// coordinates in single precision, too.
 constexpr double AlignmentTolerance = 1e-3;
 constexpr double SpacingTolerance = 1e-7;
 
@@ -72,31 +73,44 @@ bool IsAligned(const PieceInfo& a, const PieceInfo& b, Index3& shift)
   return true;
 }
 
+/// The shorter of the distances from a plane to those beside it.
+double GetStep(const std::vector<double>& planes, std::size_t plane)
+{
+  const auto step = [&](std::size_t lower) { return std::abs(planes[lower + 1] - planes[lower]); };
+  return plane == 0              ? step(plane)
+    : plane + 1 == planes.size() ? step(plane - 1)
+                                 : std::min(step(plane - 1), step(plane));
+}
+
+/// Returns whether the planes of a from `first` on are those of b, as far as both go.
+bool IsContinued(const std::vector<double>& a, std::size_t first, const std::vector<double>& b)
+{
+  const std::size_t count = std::min(a.size() - first, b.size());
+  for (std::size_t plane = 0; plane < count; ++plane)
+  {
+    const double step = std::min(GetStep(a, first + plane), GetStep(b, plane));
+    if (!(std::abs(a[first + plane] - b[plane]) <= AlignmentTolerance * step))
+    {
+      return false;
+    }
+  }
+  return count > 0;
+}
+
 /// Finds the number of planes of a that lie before the first plane of b, by coordinates on one axis. Returns false unless
 /// they have planes in common, and the same planes wherever both have some.
 bool FindShift(const std::vector<double>& a, const std::vector<double>& b, std::int64_t& shift)
 {
-  const auto begin = std::find(a.begin(), a.end(), b.front());
-  if (begin == a.end())
+  const auto count = static_cast<std::int64_t>(a.size());
+  for (shift = 1 - static_cast<std::int64_t>(b.size()); shift < count; ++shift)
   {
-    const auto other = std::find(b.begin(), b.end(), a.front());
-    shift = -(other - b.begin());
-    return other != b.end() &&
-      std::equal(other, other + std::min(b.end() - other, a.end() - a.begin()), a.begin());
+    const auto first = static_cast<std::size_t>(std::abs(shift));
+    if (shift < 0 ? IsContinued(b, first, a) : IsContinued(a, first, b))
+    {
+      return true;
+    }
   }
-  shift = begin - a.begin();
-  return std::equal(begin, begin + std::min(a.end() - begin, b.end() - b.begin()), b.begin());
-}
-
-/// Returns whether the ranges of two lists that rise or fall have anything in common.
-bool Overlap(const std::vector<double>& a, const std::vector<double>& b)
-{
-  const auto getRange = [](const std::vector<double>& from) {
-    return std::minmax({ from.front(), from.back() });
-  };
-  const std::pair<double, double> one = getRange(a);
-  const std::pair<double, double> other = getRange(b);
-  return one.first <= other.second && other.first <= one.second;
+  return false;
 }
 
 /// Where rectilinear pieces are that continue one another.
@@ -157,7 +171,8 @@ private:
       {
         const auto entry =
           all[axis].emplace(first + static_cast<std::int64_t>(plane), own[axis][plane]).first;
-        if (entry->second != own[axis][plane])
+        const double step = GetStep(own[axis], plane);
+        if (!(std::abs(entry->second - own[axis][plane]) <= AlignmentTolerance * step))
         {
           return false;
         }
@@ -198,7 +213,7 @@ private:
       {
         Index3 shift;
         if (this->IsRectilinear(piece) && this->Places[piece].Class < 0 &&
-          this->IsContinued(from, static_cast<int>(piece), shift))
+          this->FindShifts(from, static_cast<int>(piece), shift))
         {
           add(static_cast<int>(piece), shift + this->Get(from).Shift);
         }
@@ -206,18 +221,11 @@ private:
     }
   }
 
-  /// `shift` maps the indices of piece b to those of a.
-  bool IsContinued(int a, int b, Index3& shift) const
+  /// `shift` maps the indices of piece b to those of a, if one continues the other.
+  bool FindShifts(int a, int b, Index3& shift) const
   {
     const GridPlanes::Coordinates& one = this->Coordinates[static_cast<std::size_t>(a)];
     const GridPlanes::Coordinates& other = this->Coordinates[static_cast<std::size_t>(b)];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (!Overlap(one[axis], other[axis]))
-      {
-        return false;
-      }
-    }
     for (int axis = 0; axis < 3; ++axis)
     {
       if (!FindShift(one[axis], other[axis], shift[axis]))
@@ -299,11 +307,11 @@ std::shared_ptr<const GridPlanes> JoinPlanes(const Group& group, const Box& box,
   for (int axis = 0; axis < 3; ++axis)
   {
     all[axis].resize(static_cast<std::size_t>(box.GetSize()[axis] + 1));
-    for (const Placed& member : group.Members)
+    for (auto member = group.Members.rbegin(); member != group.Members.rend(); ++member)
     {
-      const std::vector<double>& own = coordinates[static_cast<std::size_t>(member.Piece)][axis];
+      const std::vector<double>& own = coordinates[static_cast<std::size_t>(member->Piece)][axis];
       std::copy(
-        own.begin(), own.end(), all[axis].begin() + (member.Cells.Min[axis] - box.Min[axis]));
+        own.begin(), own.end(), all[axis].begin() + (member->Cells.Min[axis] - box.Min[axis]));
     }
     toWorld[axis][axis] =
       (all[axis].back() - all[axis].front()) / static_cast<double>(box.GetSize()[axis]);
@@ -348,7 +356,12 @@ std::vector<Placed> Place(
   const RectilinearPlaces rectilinear(pieces, coordinates);
   std::vector<Placed> placed;
   std::vector<int> classes;
-  for (int index = 0; index < static_cast<int>(pieces.size()); ++index)
+  std::vector<int> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0);
+  // Whatever the ranks: the first block says where points are that others have a little beside them.
+  std::stable_sort(
+    order.begin(), order.end(), [&](int a, int b) { return pieces[a].Leaf < pieces[b].Leaf; });
+  for (const int index : order)
   {
     const PieceInfo& piece = pieces[index];
     Placed entry{ index, piece.Leaf, index, Index3(0),

@@ -189,21 +189,30 @@ void LevelNodes::FindMean(const Index3& point)
   Corner octants[8];
   int coarsest = Smaller;
   bool isOfLeaf = false;
+  Index3 least(1); // sides on which there is anything
+  Index3 most(0);
   for (int octant = 0; octant < 8; ++octant)
   {
     octants[octant] = this->GetOctant(point, octant);
     const int level = octants[octant].Level;
-    coarsest = level == Nothing ? coarsest : std::min(coarsest, level);
-    isOfLeaf = isOfLeaf || level == this->Brick.Level;
+    if (level != Nothing)
+    {
+      coarsest = std::min(coarsest, level);
+      isOfLeaf = isOfLeaf || level == this->Brick.Level;
+      least = glm::min(least, GetCornerOf(octant));
+      most = glm::max(most, GetCornerOf(octant));
+    }
   }
   if (!isOfLeaf)
   {
     return;
   }
+  const Index3 inward = least + most - Index3(1);
+  const bool isAtBorder = !this->OfPoints && inward != Index3(0);
   if (coarsest < this->Brick.Level)
   {
     const Index3 ratio = this->Lattice.GetScales().GetRatio(coarsest, this->Brick.Level);
-    if (DivideDown(point, ratio) * ratio != point)
+    if (isAtBorder || DivideDown(point, ratio) * ratio != point)
     {
       this->Hanging.push_back(point);
       return;
@@ -215,10 +224,12 @@ void LevelNodes::FindMean(const Index3& point)
   }
   double sum = 0.0;
   double weights = 0.0;
+  double count = 0.0;
   for (const Corner& octant : octants)
   {
     if (octant.Level != Nothing)
     {
+      count += 1.0;
       const LevelScales& scales = this->Lattice.GetScales();
       const double weight = scales.GetSize(coarsest) / scales.GetSize(octant.Level);
       sum += weight * octant.Value;
@@ -226,6 +237,12 @@ void LevelNodes::FindMean(const Index3& point)
     }
   }
   this->Values.Set(this->GetPoint(point), sum / weights);
+  const Box points{ this->Brick.Cells.Min, this->Brick.Cells.Max + Index3(1) };
+  const Index3 next = point + inward;
+  if (isAtBorder && !Intersect(points, { next, next + Index3(1) }).IsEmpty())
+  {
+    this->Border.push_back({ point, next, 1.0 / (2.0 * weights / count - 1.0) });
+  }
 }
 
 void LevelNodes::AddCorners(const ForeignLeaf& leaf)
@@ -244,6 +261,12 @@ bool LevelNodes::Interpolate(
     return false;
   }
   const Index3 ratio = this->Lattice.GetScales().GetRatio(level, this->Brick.Level);
+  const Index3 corner = (point - leaf * ratio) / ratio;
+  if ((leaf + corner) * ratio == point)
+  {
+    value = found->second[static_cast<std::size_t>(GetNumber(corner))];
+    return true;
+  }
   const glm::dvec3 at = glm::dvec3(point - leaf * ratio) / glm::dvec3(ratio);
   const auto mix = [](double a, double b, double part) { return (1.0 - part) * a + part * b; };
   const std::array<double, 8>& c = found->second;
@@ -280,6 +303,22 @@ void LevelNodes::FindHanging()
         " are missing. Do all ranks run the same build?");
     }
     this->Values.Set(this->GetPoint(point), value);
+  }
+}
+
+void LevelNodes::ExtendToBorder(const std::array<double, 2>& limits)
+{
+  std::vector<double> values; // from those that all points had before
+  for (const BorderPoint& one : this->Border)
+  {
+    const double mean = this->Values.Get(this->GetPoint(one.Point));
+    const double growth = mean - this->Values.Get(this->GetPoint(one.Next));
+    const double value = mean + one.Reach * growth;
+    values.push_back(std::isfinite(value) ? std::clamp(value, limits[0], limits[1]) : mean);
+  }
+  for (std::size_t number = 0; number < values.size(); ++number)
+  {
+    this->Values.Set(this->GetPoint(this->Border[number].Point), values[number]);
   }
 }
 

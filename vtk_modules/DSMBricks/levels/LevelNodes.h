@@ -71,6 +71,9 @@ private:
 /// has the value that the largest such leaf has there. So a leaf's value on a face is the same from both sides, whatever the
 /// levels, up to the rounding of hanging points to the type of the samples.
 ///
+/// Where nothing is beyond a point, the mean of the values of cells is one half a cell inside. The function goes on to the
+/// border as it is from there to the next point inside, so that a linear one keeps its values, but not beyond those of all cells.
+///
 /// Calls come in the order of declaration. The results do not depend on the order of the leaves.
 class LevelNodes
 {
@@ -91,6 +94,8 @@ public:
   void AddCorners(const ForeignLeaf& leaf);
   /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is missing.
   void FindHanging();
+  /// Then those of points at the border. `limits`: the least and the largest value of all cells.
+  void ExtendToBorder(const std::array<double, 2>& limits);
 
   /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their corners' values.
   template <class Visit>
@@ -132,6 +137,13 @@ private:
   {
     double Value = 0.0;
     int Level = Nothing;
+  };
+  /// A point with nothing beyond it.
+  struct BorderPoint
+  {
+    Index3 Point;
+    Index3 Next;  ///< the next one inside
+    double Reach; ///< distance of the mean's place, where the one from there to Next is 1
   };
   /// Level, z, y, x.
   using Place = std::tuple<int, std::int64_t, std::int64_t, std::int64_t>;
@@ -177,6 +189,7 @@ private:
   std::vector<std::int8_t>
     Known; ///< of points: level of the leaf whose value it is, for values of points
   std::vector<Index3> Hanging;
+  std::vector<BorderPoint> Border;
 };
 
 } // namespace bricks

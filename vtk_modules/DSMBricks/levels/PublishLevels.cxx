@@ -13,6 +13,8 @@
 #include "DSMCore/publish/Publication.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -64,6 +66,11 @@ public:
     this->Messages.RunTogether(this->What, [&] { this->CreateNodes(); });
     this->SendCubes(&LevelBuilder::SendLeaves);
     this->SendCubes(&LevelBuilder::SendToOtherLevels);
+    std::array<double, 2> limits = this->Limits;
+    for (const std::array<double, 2>& other : this->Messages.AllGatherValue(this->Limits))
+    {
+      limits = { std::min(limits[0], other[0]), std::max(limits[1], other[1]) };
+    }
     this->Messages.RunTogether(
       this->What, [&] { this->ForEachOwn([](LevelNodes& nodes) { nodes.FindMeans(); }); });
     for (int level = 0; level < this->Lattice.GetScales().GetCount(); ++level)
@@ -77,6 +84,7 @@ public:
               if (nodes.GetBrick().Level == level)
               {
                 nodes.FindHanging();
+                nodes.ExtendToBorder(limits);
               }
             });
         });
@@ -229,6 +237,14 @@ private:
   /// To bricks of the same level.
   void SendLeaves(dsm::BlockStream& stream, const LevelCube& cube)
   {
+    for (std::size_t cell = 0; !this->Source.IsOfPoints() && cell < this->Leaves.size(); ++cell)
+    {
+      const double value = this->Values[cell];
+      if (this->Leaves[cell] != 0 && std::isfinite(value))
+      {
+        this->Limits = { std::min(this->Limits[0], value), std::max(this->Limits[1], value) };
+      }
+    }
     const Index3 first = LevelCubes::GetFirst(cube);
     const Box whole{ first, first + CubeSize };
     const Index3 stride = CubeSize + Index3(this->Source.IsOfPoints() ? 1 : 0);
@@ -375,6 +391,9 @@ private:
   std::vector<std::unique_ptr<LevelNodes>>
     Nodes; ///< of this rank's bricks, in the order of their numbers
   bool TakesCorners = false;
+  /// Least and largest value of this rank's cells.
+  std::array<double, 2> Limits{ std::numeric_limits<double>::infinity(),
+    -std::numeric_limits<double>::infinity() };
   std::vector<double> Values; ///< of the cube that is sent
   std::vector<std::uint8_t> Leaves;
 };

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/medium/MediumOf.h"
 #include "DSMRayTracing/medium/SumOf.h"
 
+#include <type_traits>
 #include <variant>
 
 namespace rt
@@ -25,6 +26,22 @@ using LevelSum = SumOf<LevelField>;
 /// - its Tracer, a MediumTracer for a store, whose header SceneTracers-inl.h includes.
 using SceneMedium =
   std::variant<LatticeMedium, LatticeExtremum, LatticeSum, LevelMedium, LevelExtremum, LevelSum>;
+
+/// Whether a kind of medium lies in layers along a ray, between which other things may be. The others show a single value of
+/// each ray.
+template <class Kind>
+struct IsLayered : std::false_type
+{
+};
+template <class FieldType>
+struct IsLayered<MediumOf<FieldType>> : std::true_type
+{
+};
+inline bool HasLayers(const SceneMedium& medium)
+{
+  return std::visit(
+    [](const auto& kind) { return IsLayered<std::decay_t<decltype(kind)>>::value; }, medium);
+}
 
 } // namespace rt
 

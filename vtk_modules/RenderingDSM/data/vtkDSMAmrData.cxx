@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace
 {
@@ -218,7 +219,7 @@ vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, cons
         vtkImageData* const block = vtkImageData::SafeDownCast(part.Data);
         this->Blocks.emplace_back(block);
         looks.push_back(part.Look);
-        mine.push_back(vtkDSMImagePiece::Describe(block, 0));
+        mine.push_back(vtkDSMImagePiece::Describe(block, static_cast<int>(part.Dataset)));
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwn);
@@ -238,9 +239,14 @@ vtkDSMAmrData::~vtkDSMAmrData() = default;
 
 void vtkDSMAmrData::FindLevels()
 {
+  this->Order.resize(this->Pieces.size());
+  std::iota(this->Order.begin(), this->Order.end(), std::size_t{ 0 });
+  std::stable_sort(this->Order.begin(), this->Order.end(),
+    [this](std::size_t a, std::size_t b) { return this->Pieces[a].Leaf < this->Pieces[b].Leaf; });
   std::vector<const double*> spacings;
-  for (const bricks::PieceInfo& piece : this->Pieces)
+  for (const std::size_t number : this->Order)
   {
+    const bricks::PieceInfo& piece = this->Pieces[number];
     const bool isKnown = std::any_of(spacings.begin(), spacings.end(),
       [&](const double* one) { return AreSame(one, piece.Spacing); });
     if (!IsEmpty(piece) && !isKnown)
@@ -248,7 +254,7 @@ void vtkDSMAmrData::FindLevels()
       spacings.push_back(piece.Spacing);
     }
   }
-  std::sort(spacings.begin(), spacings.end(),
+  std::stable_sort(spacings.begin(), spacings.end(),
     [](const double* a, const double* b) { return a[0] * a[1] * a[2] > b[0] * b[1] * b[2]; });
   std::vector<Index3> scales;
   for (const double* spacing : spacings)
@@ -278,16 +284,20 @@ void vtkDSMAmrData::FindLevels()
 void vtkDSMAmrData::FindPlaces()
 {
   this->Places.assign(this->Pieces.size(), { 0, {} });
-  const auto first = std::find_if(this->Pieces.begin(), this->Pieces.end(),
-    [this](const bricks::PieceInfo& piece)
-    { return !IsEmpty(piece) && AreSame(piece.Spacing, this->Spacings.front().data()); });
-  if (first == this->Pieces.end())
+  const auto found = std::find_if(this->Order.begin(), this->Order.end(),
+    [this](std::size_t number)
+    {
+      const bricks::PieceInfo& piece = this->Pieces[number];
+      return !IsEmpty(piece) && AreSame(piece.Spacing, this->Spacings.front().data());
+    });
+  if (found == this->Order.end())
   {
     return;
   }
-  const glm::dmat3 direction = GetDirection(*first);
+  const bricks::PieceInfo& first = this->Pieces[*found];
+  const glm::dmat3 direction = GetDirection(first);
   const glm::dmat3 inverse = glm::inverse(direction);
-  const glm::dvec3 anchor(first->Origin[0], first->Origin[1], first->Origin[2]);
+  const glm::dvec3 anchor(first.Origin[0], first.Origin[1], first.Origin[2]);
   Index3 least(std::numeric_limits<std::int64_t>::max());
   for (std::size_t number = 0; number < this->Pieces.size(); ++number)
   {
@@ -352,10 +362,12 @@ std::vector<std::uint8_t> vtkDSMAmrData::FindLeaves(std::size_t own) const
       Index3(
         this->Pieces[number].Max[0], this->Pieces[number].Max[1], this->Pieces[number].Max[2]) });
   const Index3 size = place.Cells.GetSize();
-  for (std::size_t other = 0; other < this->Places.size(); ++other)
+  bool isBefore = true; // the block in the order
+  for (const std::size_t other : this->Order)
   {
     const Place& by = this->Places[other];
-    const bool covers = by.Level > place.Level || (by.Level == place.Level && other < number);
+    isBefore = isBefore && other != number;
+    const bool covers = by.Level > place.Level || (by.Level == place.Level && isBefore);
     if (!covers || by.Cells.IsEmpty())
     {
       continue;

@@ -14,7 +14,7 @@ class vtkImageData;
 
 /// Adaptively refined blocks. Levels are found by the blocks' spacing. Cells that a finer block covers are not shown, nor are
 /// ghost and blanked cells. Where no finer block is there, a cell that is marked as refined is shown. Of blocks of a level that
-/// overlap, the first one counts.
+/// overlap, the one of the lowest flat index counts, on whatever rank it is.
 class vtkDSMAmrData final : public vtkDSMLevelData
 {
 public:
@@ -42,6 +42,7 @@ private:
   std::vector<vtkSmartPointer<vtkImageData>> Blocks;
   std::vector<bricks::PieceInfo> Pieces; ///< all ranks' blocks, in rank order
   std::vector<Place> Places;             ///< likewise
+  std::vector<std::size_t> Order;        ///< their indices, by the blocks' flat indices
   int FirstOwn = 0;
   std::vector<std::array<double, 3>> Spacings; ///< of the levels
 };

@@ -430,7 +430,7 @@ std::shared_ptr<const vol::FileBrickReader> vtkDSMFileVolume::CreateReader(
   const auto reader = std::make_shared<vol::FileCells>(
     values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered);
   return std::make_shared<vol::FileBrickReader>(lattice,
-    std::make_shared<bricks::CellAverages>(reader, cells),
+    std::make_shared<bricks::CellAverages>(reader),
     [values, cells](std::vector<Box> boxes)
     {
       for (Box& box : boxes) // of points

@@ -105,7 +105,7 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
                   image->GetClassName() +
                   "; ray tracing requires blocks of image data. Apply Resample To Image first.");
               }
-              this->LevelParts.push_back({ image, 0, FindLook(looks, 0) });
+              this->LevelParts.push_back({ image, leaf, FindLook(looks, 0) });
             }
           });
       }

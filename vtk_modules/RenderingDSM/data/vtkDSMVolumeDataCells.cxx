@@ -23,7 +23,6 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Averag
   };
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const bricks::LatticePlan::Lattice& lattice = this->Plan.GetLattices()[number];
-  const bricks::Box whole{ bricks::Index3(0), lattice.Points - bricks::Index3(1) };
   std::map<std::size_t, std::shared_ptr<bricks::CellAverages>> own;
   std::vector<Reach> mine;
   std::vector<bricks::CellExchange::Piece> pieces;
@@ -43,9 +42,9 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Averag
         {
           const auto piece = std::make_shared<const vtkDSMCellPiece>(
             image, array, choice.Component, member, hasMask, info.Valid);
-          mine.push_back({ static_cast<std::int64_t>(index), messenger.GetRank(),
-            bricks::Intersect(piece->GetReach(), whole) });
-          own[index] = std::make_shared<bricks::CellAverages>(piece, whole);
+          mine.push_back(
+            { static_cast<std::int64_t>(index), messenger.GetRank(), piece->GetReach() });
+          own[index] = std::make_shared<bricks::CellAverages>(piece);
         }
       }
     });
@@ -55,7 +54,7 @@ std::vector<std::shared_ptr<const bricks::VoxelSource>> vtkDSMVolumeData::Averag
     piece.Rank = static_cast<int>(reach.Rank);
     piece.Reach = reach.Cells;
   }
-  bricks::CellExchange::Run(messenger, what, whole, pieces, own);
+  bricks::CellExchange::Run(messenger, what, pieces, own);
   std::vector<std::shared_ptr<const bricks::VoxelSource>> sources;
   for (const auto& [index, piece] : own)
   {

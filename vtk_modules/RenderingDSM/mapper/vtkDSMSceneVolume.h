@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -195,8 +196,8 @@ private:
   std::optional<std::array<double, 2>> ValuesWithoutFills; ///< their range, if there are fills
   vtkDSMVolumeData::Choice SuggestedFor;
   bricks::ValueRange SuggestedFrom{}; ///< range of the values that suggested it
-  /// One for each of the arrays.
-  vtkDSMKept<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MakeMedium[MostArrays];
+  /// For each of the arrays, those of the last frame's parts.
+  std::map<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MediumMakers[MostArrays];
   using KeptColors = std::shared_ptr<const rt::ColorMap>;
   /// Without opacities, and with; by the property and its time, the component, and the range of values.
   vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, float, float>, KeptColors>

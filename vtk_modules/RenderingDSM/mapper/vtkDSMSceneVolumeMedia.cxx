@@ -86,14 +86,22 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
   const glm::dvec3 upper(bounds[1], bounds[3], bounds[5]);
   // As in all of VTK's mappers, the unit distance is one of the data, whatever the prop's scale is.
   const glm::dmat3 worldToData = glm::inverse(glm::dmat3(dataToWorld));
+  auto& makers = this->MediumMakers[number];
+  auto known = std::move(makers);
+  makers.clear();
   this->ForEachField(array, dataToWorld,
     [&](const auto& field, std::size_t part)
     {
       using FieldType = std::decay_t<decltype(field)>;
       const auto key = look.GetMediumKey(
         range, field.GetFinestLength(worldToData), glm::length(upper - lower), component);
-      const auto& make =
-        this->MakeMedium[number].Get(key, [&] { return vtkDSMVolumeLook::GetMediumMaker(key); });
+      makers.insert(known.extract(key));
+      const auto [entry, isNew] = makers.try_emplace(key);
+      if (isNew)
+      {
+        entry->second = vtkDSMVolumeLook::GetMediumMaker(key);
+      }
+      const auto& make = entry->second;
       if (!make)
       {
         this->Messages.push_back(

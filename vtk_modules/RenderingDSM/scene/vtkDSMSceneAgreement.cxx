@@ -430,11 +430,8 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
     });
   if (isAny(&View::LimitsRays))
   {
-    const auto isMedium = [](const rt::SceneMedium& medium)
-    { return std::holds_alternative<rt::LatticeMedium>(medium); };
-    // Media that show a single value of each ray have no layers.
-    this->LimitRays(
-      request, request.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), isMedium));
+    this->LimitRays(request,
+      request.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), &rt::HasLayers));
   }
   rt::Picture picture;
   const auto result = this->TraceScene(scene, request, std::move(offers), coarser, picture);

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -60,14 +61,15 @@ public:
     all.Begin(rays, wanted);
     all.SetSpace(rays, wanted, light.WorldToSpace);
     all.KeepsPieces = true;
-    all.JoinedLength = 0.0;
     all.DarkBelow = 0.0;
-    ForEachRay(wanted, [&](int ray) { all.FirstPiece[ray] = 0; });
+    // Pieces are joined when they are in order.
+    ForEachRay(
+      wanted, [&](int ray) { all.FirstPiece[ray] = std::numeric_limits<std::size_t>::max(); });
     ForEachLevelPacket(field, TransferPredicate(function), this->Kernel,
       static_cast<BeamBricks*>(beam), rays, wanted,
       [&](BeamBricks& bricks, LevelPackets& packets)
       {
-        this->MarchPacket(field, function, bricks, packets, all);
+        this->MarchPacket(field, function, bricks, packets, light.JoinedLength, all);
         return RayMask{ 0 };
       });
     return FindRays(wanted,
@@ -103,10 +105,13 @@ public:
   }
 
 private:
+  /// `finestPiece`: length of a piece of the finest level that is described as one; 0: pieces are not described.
   void MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
-    LevelPackets& packets, MediumLight& light) const
+    LevelPackets& packets, double finestPiece, MediumLight& light) const
   {
     const bricks::LevelLattice& lattice = field.Voxels->Lattice;
+    const bricks::LevelScales& scales = lattice.GetScales();
+    const double finest = scales.GetSize(scales.GetCount() - 1);
     bricks::DispatchSamples(lattice,
       [&](auto sample)
       {
@@ -126,7 +131,8 @@ private:
           const typename Store::Pin pin =
             this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
           const bricks::VoxelBrick<T> voxels(pin.GetData());
-          const glm::dvec3 scale(lattice.GetScales().Get(level));
+          const glm::dvec3 scale(scales.Get(level));
+          light.JoinedLength = finestPiece * scales.GetSize(level) / finest;
           glm::dmat3 axes = light.WorldToSpace * glm::dmat3(field.IndexToWorld);
           for (int axis = 0; axis < 3; ++axis)
           {
