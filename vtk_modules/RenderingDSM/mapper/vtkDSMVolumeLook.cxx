@@ -7,6 +7,7 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
 #include "vtkPlane.h"
@@ -189,6 +190,15 @@ void vtkDSMVolumeLook::FindMissingFeatures(
   };
   warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
+  warn(property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION,
+    "the nearest sample (VTK's default) instead of linear interpolation",
+    "Call SetInterpolationTypeToLinear(). For labels, draw slices with InterpolateSlicesOff().");
+  warn(property->GetColorChannels() == 3 &&
+      property->GetRGBTransferFunction()->GetIndexedLookup() != 0,
+    "a color for each category",
+    "Call IndexedLookupOff() on the color function, or draw slices with InterpolateSlicesOff(). In "
+    "ParaView, turn off Interpret Values As Categories, or use DSM Slices without Interpolate "
+    "Values.");
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;
