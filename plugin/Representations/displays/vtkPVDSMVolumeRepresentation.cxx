@@ -4,6 +4,7 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkContourValues.h"
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -19,6 +20,7 @@ vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
   this->Volume->SetProperty(this->VolumeProperty);
   this->VolumeMapper->AutomaticIsoValueOff();
   this->VolumeMapper->SurfacesOnlyOff();
+  this->VolumeProperty->SetInterpolationTypeToLinear();
 }
 
 vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
@@ -26,7 +28,8 @@ vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
 int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  // As ParaView's Volume does.
+  // As ParaView's Volume does: without an array there is nothing to see.
+  this->Volume->SetVisibility(this->GetVisibility() && !this->VolumeMapper->GetIsoArray().empty());
   const bool areDependent = !this->UseSeparateOpacityArray &&
     (!this->VolumeMapper->GetMapScalars() || this->MultiComponentsMapping);
   this->VolumeProperty->SetIndependentComponents(!areDependent);
@@ -100,6 +103,22 @@ void vtkPVDSMVolumeRepresentation::SetScattering(double part)
 void vtkPVDSMVolumeRepresentation::SetBlendMode(int mode)
 {
   this->VolumeMapper->SetBlendMode(mode);
+}
+
+void vtkPVDSMVolumeRepresentation::SetNumberOfIsosurfaces(int number)
+{
+  this->VolumeProperty->GetIsoSurfaceValues()->SetNumberOfContours(number);
+}
+
+void vtkPVDSMVolumeRepresentation::SetIsosurfaceValue(int index, double value)
+{
+  this->VolumeProperty->GetIsoSurfaceValues()->SetValue(index, value);
+}
+
+std::string vtkPVDSMVolumeRepresentation::GetExportObstacle() const
+{
+  return "A DSM Volume is not exported, because the file holds surfaces only. Export its "
+         "isosurfaces (DSM Ray Traced, or the filter Contour), or save a screenshot.";
 }
 
 void vtkPVDSMVolumeRepresentation::SetMultiComponentsMapping(bool maps)

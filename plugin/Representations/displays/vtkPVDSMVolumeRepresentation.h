@@ -60,7 +60,7 @@ public:
   ///@}
 
   /**
-   * One of vtkVolumeMapper's blend modes, but those of isosurfaces and slices.
+   * One of vtkVolumeMapper's blend modes, but Slice.
    */
   void SetBlendMode(int mode);
 
@@ -69,6 +69,16 @@ public:
    * and the fourth gives the opacity. So they do, too, where scalars are not mapped to colors.
    */
   void SetMultiComponentsMapping(bool maps);
+
+  ///@{
+  /**
+   * Values of the blend mode Isosurface, forwarded to the volume's property.
+   */
+  void SetNumberOfIsosurfaces(int number);
+  void SetIsosurfaceValue(int index, double value);
+  ///@}
+
+  std::string GetExportObstacle() const override;
 
 protected:
   vtkPVDSMVolumeRepresentation();
