@@ -190,6 +190,13 @@ display.Ambient = 0.2
 display.DSMShadows = 1
 view.AdditionalLights = [simple.CreateLight()]
 view.AdditionalLights[0].Coords, view.AdditionalLights[0].Position = "Scene", [80.0, 60.0, 12.0]
+display.ScalarOpacityUnitDistance = 0.2 * unit_distance
+scattered = render(view, "DenseShadows")
+display.DSMScattering = 0.0
+dark, covered = render(view), get_covered(scattered)
+means = dark[covered].mean(), scattered[covered].mean()
+check(means[1] > 1.3 * means[0], f"by default, a dense volume scatters light: {means}")
+display.ScalarOpacityUnitDistance = unit_distance
 shadows = render(view, "Shadows")
 display.DSMShadows = 0
 lit = render(view)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMVolumeRepresentation.h"
 
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
@@ -48,6 +50,7 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
         component, isOne && component != map->GetVectorComponent() ? 0.0 : 1.0);
     }
   }
+  this->VolumeMapper->SetScattering(this->GetScatteredPart());
   this->VolumeProperty->SetAmbient(this->Ambient);
   this->VolumeProperty->SetDiffuse(this->Diffuse);
   this->VolumeProperty->SetSpecular(this->Specular);
@@ -97,7 +100,17 @@ void vtkPVDSMVolumeRepresentation::SetVolumeAnisotropy(double anisotropy)
 
 void vtkPVDSMVolumeRepresentation::SetScattering(double part)
 {
-  this->VolumeMapper->SetScattering(part);
+  this->Scattering = part;
+}
+
+/// Without shadows and occlusion, the light is Volume's.
+double vtkPVDSMVolumeRepresentation::GetScatteredPart() const
+{
+  vtkDSMScene* const scene = this->Display->GetScene();
+  const vtkDSMLightOptions* const light = scene ? scene->GetLightOptions() : nullptr;
+  const bool isObstructed =
+    light && (light->GetShadows() || light->GetAmbientOcclusionSamples() > 0);
+  return isObstructed && this->VolumeProperty->GetShade() != 0 ? this->Scattering : 0.0;
 }
 
 void vtkPVDSMVolumeRepresentation::SetBlendMode(int mode)

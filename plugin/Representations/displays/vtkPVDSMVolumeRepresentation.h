@@ -46,7 +46,8 @@ public:
   ///@}
 
   /**
-   * Forwarded to the mapper.
+   * The part of the shading that is scattered light, while the view has shadows or ambient occlusion: these alone would
+   * leave dense volumes nearly black.
    */
   void SetScattering(double part);
 
@@ -91,8 +92,10 @@ private:
   void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
 
   void UpdateOpacityArray();
+  double GetScatteredPart() const;
 
   vtkNew<vtkVolumeProperty> VolumeProperty;
+  double Scattering = 0.0;
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
   bool MultiComponentsMapping = false;
