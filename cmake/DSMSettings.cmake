@@ -12,10 +12,11 @@
 #   CHOICES  numbers that the panel's slider offers instead
 #   ENTRIES  of an enum: a name in C++ and a text for each value from 0
 #   PANEL    first: below Representation; default or advanced: in the group Ray Tracing. Without: not in the panel.
+#   ZERO     what the value 0 means, on the settings page
 #   PAGE_DEFAULT, PAGE_ENTRIES  of what is no setting of the ranks, but on the settings page: default, number of entries
 set(DSM_SETTINGS)
 function (dsm_setting name)
-  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
+  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL ZERO PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
   set(lists RANGE SLIDER ENTRIES)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "${keys}" "${lists}")
   if (NOT arg_METHOD)
@@ -185,6 +186,10 @@ function (dsm_define_property result name isPage)
   set(type "${DSM_${name}_TYPE}")
   set(default "${DSM_${name}_DEFAULT}")
   set(entries "${DSM_${name}_ENTRIES}")
+  set(label "${DSM_${name}_LABEL}")
+  if (isPage AND DSM_${name}_ZERO)
+    string(APPEND label ", 0 = ${DSM_${name}_ZERO}")
+  endif ()
   set(command "Set${DSM_${name}_METHOD}")
   set(kind Int)
   set(domain "")
@@ -252,7 +257,7 @@ function (dsm_define_property result name isPage)
     endif ()
   endif ()
   string(REPLACE "<" "&lt;" text "${DSM_${name}_TEXT}")
-  set(${result} "<${kind}VectorProperty name=\"DSM${name}\" label=\"${DSM_${name}_LABEL}\"${attributes}\
+  set(${result} "<${kind}VectorProperty name=\"DSM${name}\" label=\"${label}\"${attributes}\
  number_of_elements=\"1\" default_values=\"${default}\">${domain}\
 <Documentation>${text}</Documentation><Hints>${hints}</Hints></${kind}VectorProperty>\n" PARENT_SCOPE)
 endfunction ()

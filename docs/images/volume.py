@@ -46,8 +46,8 @@ display.DSMSamplesPerPixel = 4
 pictures = [draw(view)]
 display.Shade, display.Specular, display.SpecularPower = 1, 0.3, 30.0
 pictures.append(draw(view))
-display.DSMShadows = 1
+display.DSMShadows, display.DSMScattering = 1, 0.0
 pictures.append(draw(view))
-display.Shade, display.DSMScattering = 0, 1.0
+display.DSMScattering = 1.0
 pictures.append(draw(view))
 write(os.path.join(FOLDER, "volume_light.png"), numpy.hstack(pictures))

@@ -13,11 +13,11 @@ import xml.etree.ElementTree as ElementTree
 
 PAGE, PROJECT, OUTPUT = (pathlib.Path(path) for path in sys.argv[1:])
 SHARED = ("ScalarOpacityUnitDistance", "Shade", "VolumeAnisotropy", "UseSeparateOpacityArray", "OpacityArrayName",
-          "OpacityComponent")  # of ParaView's Volume
+          "OpacityComponent", "IsosurfaceValues")  # of ParaView's Volume
 # Rows in the order of the definitions.
 TABLES = {
     "isosurfaces": r"DSMShow|DSM(IsoArray|IsoComponent|IgnoreValues|ValidRange|IsoValue|ValueRange)\w*",
-    "volumes": r"DSMBlendMode|DSMScattering|" + "|".join(SHARED),
+    "volumes": r"BlendMode|DSMScattering|" + "|".join(SHARED),
     "slices": r"DSMSlice(X|XIndex|XIndices|Plane|Origin|Normal|OpacityFromMap|Interpolate|Lighting)",
     "clipping": r"DSM(Clip|Crop|Cap)\w*",
     "meshes": r"DSMShowEdges|DSMLineRadius|DSMPointRadius|DSMRadiusArray",

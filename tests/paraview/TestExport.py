@@ -96,6 +96,16 @@ check(indices is not None and indices.group(1).count("-1") == triangles, "as man
 with open(export("isosurface.vrml")) as file:
     check("IndexedFaceSet" in file.read(), "there are faces in VRML")
 
+# Volumes and slices are no triangles.
+for kind in ("DSM Volume", "DSM Slices"):
+    display.Representation = kind
+    render(view)
+    with Messages() as messages:
+        simple.ExportView(os.path.join(OUTPUT, "none.gltf"), view=view)
+    check("screenshot" in messages.text and messages.text.count(kind) == 1, f"{kind}: an error names a way out")
+display.Representation = REPRESENTATION
+render(view)
+
 # What is clipped, placed, hidden or without a surface.
 display.DSMClip = 1
 display.DSMClipOrigin, display.DSMClipNormal = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]

@@ -90,3 +90,34 @@ check(other.DSMThreads == 2, "a display in another view begins with what holds")
 other.DSMThreads = 3
 render(second)
 check(get_threads(0.6) == 3, "and is of the same session")
+
+# Arrays of hidden blocks are not missing.
+third = create_view()
+blocks = [simple.Wavelet(), simple.HyperTreeGridRandom(OutputBounds=[12, 30, -9, 9, -9, 9]),
+          simple.Cone(Center=[0, 20, 0], Height=10, Radius=6)]
+names = ["image", "trees", "cone"]
+group = simple.GroupDatasets(Input=blocks, BlockNames=names)
+mixed = show(group, third, [150.0], "RTData")
+simple.ColorBy(mixed, ("POINTS", "RTData"))
+render(third)
+place_camera(third)
+
+
+def look_at(shown, kind=REPRESENTATION):
+    mixed.Representation = kind
+    mixed.BlockSelectors = [f"/Root/{name}" for name in names if name in shown]
+    with Messages() as messages:
+        picture = get_covered(render(third)).sum()
+    return picture, messages.text
+
+
+everything = look_at(names)[0]
+for shown in (["trees", "cone"], ["cone"], names):
+    for kind in ("DSM Volume", "DSM Slices", REPRESENTATION):
+        covered, text = look_at(shown, kind)
+        check(text.strip() == "", f"{kind} of {shown}: nothing is reported: {text}")
+    check(0 < covered < everything or shown == names and covered == everything, f"{covered} pixels of {shown}")
+mixed.DSMShow = "Surface"
+check(look_at(["trees", "cone"])[1].strip() == "", "nor of colors of surfaces")
+mixed.DSMShow, mixed.DSMIsoArray = "Isosurfaces", ["POINTS", "RTDta"]
+check("'RTDta' does not exist" in look_at(["trees", "cone"])[1] or get_ranks() > 1, "a wrong name is reported")

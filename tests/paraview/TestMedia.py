@@ -54,6 +54,19 @@ check(get_covered(chosen).mean() > 0.1, "the first look shows something")
 display.ScalarOpacityUnitDistance = 1.7
 compare("FirstLook")
 
+# As Volume, which shows nothing without an array; here with a message. So have two-dimensional functions.
+expected = show_as("DSM Volume")
+for name, value, before, text in (("ColorArrayName", [None, ""], ["POINTS", "waves"], "No array colors"),
+                                  ("UseTransfer2D", 1, 0, "two-dimensional")):
+    for times in (1, 0):
+        with Messages() as messages:
+            setattr(display, name, value)
+            ignored = render(view)
+        check(get_ranks() > 1 or messages.text.count(text) == times, f"{name} is reported {times} times")
+    setattr(display, name, before)
+    check(get_covered(ignored).any() == (name == "UseTransfer2D"), f"{name}: what is seen")
+check_equal(render(view), expected, "an array colors it again", tolerance=0)
+
 opacity = simple.GetOpacityTransferFunction("waves")
 opacity.Points = [-1.0, 0.0, 0.5, 0.0, 0.2, 0.0, 0.5, 0.0, 0.3, 0.9, 0.5, 0.0, 0.4, 0.0, 0.5, 0.0, 1.0, 0.1, 0.5, 0.0]
 compare("Shells", mean=1.5, largest=120)
@@ -65,14 +78,12 @@ compare("AlongAnAxis")
 view.CameraParallelProjection = 0
 place_camera(view)
 
-# ParaView's panel offers none of these for Volume, which has them.
-for mode in (1, 2, 3, 4):
-    display.DSMBlendMode = mode
+# Volume and DSM Volume share the property.
+for mode in ("Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive"):
     display.BlendMode = mode
-    name = display.GetProperty("DSMBlendMode").GetData().replace(" ", "")
-    compare(name, mean=1.5, largest=255)
-check(name == "Additive", "the modes have names")
-display.DSMBlendMode = "Composite"
+    compare(mode.replace(" ", ""), mean=1.5, largest=255)
+display.BlendMode, display.IsosurfaceValues = "Isosurface", [0.3]
+compare("Isosurface", mean=3.0, largest=255)
 display.BlendMode = "Composite"
 
 display.DSMDebugView = "Brick"
@@ -197,6 +208,13 @@ display.Ambient = 0.2
 display.DSMShadows = 1
 view.AdditionalLights = [simple.CreateLight()]
 view.AdditionalLights[0].Coords, view.AdditionalLights[0].Position = "Scene", [80.0, 60.0, 12.0]
+display.ScalarOpacityUnitDistance = 0.2 * unit_distance
+scattered = render(view, "DenseShadows")
+display.DSMScattering = 0.0
+dark, covered = render(view), get_covered(scattered)
+means = dark[covered].mean(), scattered[covered].mean()
+check(means[1] > 1.3 * means[0], f"by default, a dense volume scatters light: {means}")
+display.ScalarOpacityUnitDistance = unit_distance
 shadows = render(view, "Shadows")
 display.DSMShadows = 0
 lit = render(view)

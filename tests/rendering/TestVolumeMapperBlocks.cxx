@@ -350,6 +350,15 @@ TEST_F(VolumeMapperBlocks, HiddenBlocksAreNotThere)
   const std::vector<unsigned char> hidden = this->Draw(amr);
   this->Mapper->RemoveBlockLooks();
   EXPECT_EQ(this->Draw(coarse), hidden);
+  // An array that only hidden blocks have is not missing.
+  const auto other = MakeTrees(2);
+  other->GetCellData()->GetArray("distance")->SetName("other");
+  vtkNew<vtkMultiBlockDataSet> both;
+  both->SetBlock(0, MakeTrees(2));
+  both->SetBlock(1, other);
+  this->Mapper->SetIsoArrayOnCells(true);
+  this->Mapper->SetBlockVisibility(1, false);
+  this->Draw(both);
   EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
 }
 

@@ -554,6 +554,23 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
   this->Mapper->AddObserver(vtkCommand::WarningEvent, observer);
   this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("InterpolationTypeToLinear"), std::string::npos)
+    << "VTK's default is the nearest sample";
+  observer->Clear();
+  this->Mapper->SetInputData(MakeBall());
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError() || observer->GetWarning()) << "once, not for each dataset";
+  vtkNew<vtkColorTransferFunction> categories;
+  categories->AddRGBPoint(0.0, 1.0, 0.0, 0.0);
+  categories->IndexedLookupOn();
+  this->Volume->GetProperty()->SetInterpolationTypeToLinear();
+  this->Volume->GetProperty()->SetColor(categories);
+  this->Window->Render();
+  EXPECT_NE(
+    observer->GetWarningMessage().find("Interpret Values As Categories"), std::string::npos);
+  observer->Clear();
+  categories->IndexedLookupOff();
+  this->Window->Render();
   EXPECT_FALSE(observer->GetError() || observer->GetWarning());
   this->Volume->GetProperty()->ShadeOn();
   this->Window->Render();

@@ -44,6 +44,11 @@ void vtkPVDSMSliceRepresentation::SetInterpolateSlices(bool interpolate)
   this->VolumeMapper->SetInterpolateSlices(interpolate);
 }
 
+std::string vtkPVDSMSliceRepresentation::GetExportObstacle() const
+{
+  return "DSM Slices are not exported. Export those of the filter Slice, or save a screenshot.";
+}
+
 bool vtkPVDSMSliceRepresentation::IsTranslucent()
 {
   return this->Superclass::IsTranslucent() || this->VolumeMapper->GetSliceOpacity();

@@ -13,6 +13,8 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"             // for ivars
 
+#include <string> // for signatures
+
 class vtkPiecewiseFunction;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMSliceRepresentation : public vtkPVDSMImageRepresentation
@@ -36,6 +38,8 @@ public:
   void SetSliceLighting(bool isLit);
   void SetInterpolateSlices(bool interpolate);
   ///@}
+
+  std::string GetExportObstacle() const override;
 
 protected:
   vtkPVDSMSliceRepresentation();

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMVolumeRepresentation.h"
 
+#include "vtkDSMLightOptions.h"
+#include "vtkDSMScene.h"
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkContourValues.h"
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -19,6 +22,7 @@ vtkPVDSMVolumeRepresentation::vtkPVDSMVolumeRepresentation()
   this->Volume->SetProperty(this->VolumeProperty);
   this->VolumeMapper->AutomaticIsoValueOff();
   this->VolumeMapper->SurfacesOnlyOff();
+  this->VolumeProperty->SetInterpolationTypeToLinear();
 }
 
 vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
@@ -26,7 +30,8 @@ vtkPVDSMVolumeRepresentation::~vtkPVDSMVolumeRepresentation() = default;
 int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
   vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
 {
-  // As ParaView's Volume does.
+  // As ParaView's Volume does: without an array there is nothing to see.
+  this->Volume->SetVisibility(this->GetVisibility() && !this->VolumeMapper->GetIsoArray().empty());
   const bool areDependent = !this->UseSeparateOpacityArray &&
     (!this->VolumeMapper->GetMapScalars() || this->MultiComponentsMapping);
   this->VolumeProperty->SetIndependentComponents(!areDependent);
@@ -45,6 +50,7 @@ int vtkPVDSMVolumeRepresentation::ProcessViewRequest(
         component, isOne && component != map->GetVectorComponent() ? 0.0 : 1.0);
     }
   }
+  this->VolumeMapper->SetScattering(this->GetScatteredPart());
   this->VolumeProperty->SetAmbient(this->Ambient);
   this->VolumeProperty->SetDiffuse(this->Diffuse);
   this->VolumeProperty->SetSpecular(this->Specular);
@@ -94,12 +100,38 @@ void vtkPVDSMVolumeRepresentation::SetVolumeAnisotropy(double anisotropy)
 
 void vtkPVDSMVolumeRepresentation::SetScattering(double part)
 {
-  this->VolumeMapper->SetScattering(part);
+  this->Scattering = part;
+}
+
+/// Without shadows and occlusion, the light is Volume's.
+double vtkPVDSMVolumeRepresentation::GetScatteredPart() const
+{
+  vtkDSMScene* const scene = this->Display->GetScene();
+  const vtkDSMLightOptions* const light = scene ? scene->GetLightOptions() : nullptr;
+  const bool isObstructed =
+    light && (light->GetShadows() || light->GetAmbientOcclusionSamples() > 0);
+  return isObstructed && this->VolumeProperty->GetShade() != 0 ? this->Scattering : 0.0;
 }
 
 void vtkPVDSMVolumeRepresentation::SetBlendMode(int mode)
 {
   this->VolumeMapper->SetBlendMode(mode);
+}
+
+void vtkPVDSMVolumeRepresentation::SetNumberOfIsosurfaces(int number)
+{
+  this->VolumeProperty->GetIsoSurfaceValues()->SetNumberOfContours(number);
+}
+
+void vtkPVDSMVolumeRepresentation::SetIsosurfaceValue(int index, double value)
+{
+  this->VolumeProperty->GetIsoSurfaceValues()->SetValue(index, value);
+}
+
+std::string vtkPVDSMVolumeRepresentation::GetExportObstacle() const
+{
+  return "A DSM Volume is not exported, because the file holds surfaces only. Export its "
+         "isosurfaces (DSM Ray Traced, or the filter Contour), or save a screenshot.";
 }
 
 void vtkPVDSMVolumeRepresentation::SetMultiComponentsMapping(bool maps)

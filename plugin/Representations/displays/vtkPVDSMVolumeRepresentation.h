@@ -46,7 +46,8 @@ public:
   ///@}
 
   /**
-   * Forwarded to the mapper.
+   * The part of the shading that is scattered light, while the view has shadows or ambient occlusion: these alone would
+   * leave dense volumes nearly black.
    */
   void SetScattering(double part);
 
@@ -60,7 +61,7 @@ public:
   ///@}
 
   /**
-   * One of vtkVolumeMapper's blend modes, but those of isosurfaces and slices.
+   * One of vtkVolumeMapper's blend modes, but Slice.
    */
   void SetBlendMode(int mode);
 
@@ -69,6 +70,16 @@ public:
    * and the fourth gives the opacity. So they do, too, where scalars are not mapped to colors.
    */
   void SetMultiComponentsMapping(bool maps);
+
+  ///@{
+  /**
+   * Values of the blend mode Isosurface, forwarded to the volume's property.
+   */
+  void SetNumberOfIsosurfaces(int number);
+  void SetIsosurfaceValue(int index, double value);
+  ///@}
+
+  std::string GetExportObstacle() const override;
 
 protected:
   vtkPVDSMVolumeRepresentation();
@@ -81,8 +92,10 @@ private:
   void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
 
   void UpdateOpacityArray();
+  double GetScatteredPart() const;
 
   vtkNew<vtkVolumeProperty> VolumeProperty;
+  double Scattering = 0.0;
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
   bool MultiComponentsMapping = false;

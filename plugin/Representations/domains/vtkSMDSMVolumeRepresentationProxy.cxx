@@ -8,6 +8,7 @@
 #include "vtkPVXMLElement.h"
 #include "vtkPVXMLParser.h"
 #include "vtkSMArrayListDomain.h"
+#include "vtkSMEnumerationDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -45,6 +46,20 @@ void ShowForVolumes(vtkSMProperty* property)
   }
 }
 
+/// ParaView offers three of the modes that its Volume has.
+void OfferBlendModes(vtkSMProperty* property, vtkSMProperty* own)
+{
+  auto* const offered = property ? property->FindDomain<vtkSMEnumerationDomain>() : nullptr;
+  auto* const all = own ? own->FindDomain<vtkSMEnumerationDomain>() : nullptr;
+  for (unsigned int number = 0; offered && all && number < all->GetNumberOfEntries(); ++number)
+  {
+    if (!offered->HasEntryText(all->GetEntryText(number)))
+    {
+      offered->AddEntry(all->GetEntryText(number), all->GetEntryValue(number));
+    }
+  }
+}
+
 } // namespace
 
 /// Volume's definition lets the panel show these to advanced users only, or Shade for Volume, too, and a property can name only
@@ -62,6 +77,7 @@ void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
     shade->SetPanelVisibility("default");
   }
   ShowForVolumes(display->GetProperty("MultiComponentsMapping"));
+  OfferBlendModes(display->GetProperty("BlendMode"), this->GetProperty("BlendMode"));
   for (const char* name : { "ScalarOpacityUnitDistance", "VolumeAnisotropy" })
   {
     if (vtkSMProperty* const property = display->GetProperty(name))
@@ -89,6 +105,33 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     this->ChooseArray(display);
   }
+  if (!isOfSlices)
+  {
+    this->ReportIgnored(display);
+  }
+}
+
+void vtkSMDSMVolumeRepresentationProxy::ReportIgnored(vtkSMPVRepresentationProxy* display)
+{
+  std::string text;
+  if (!display->GetUsingScalarColoring())
+  {
+    text =
+      "No array colors the DSM Volume, so nothing is drawn. Choose an array under Coloring, or "
+      "the representation DSM Ray Traced, which shows solid colors.";
+  }
+  else if (vtkSMPropertyHelper(display, "UseTransfer2D", true).GetAsInt() != 0)
+  {
+    text =
+      "DSM Volume ignores the two-dimensional transfer function and uses the opacity function. "
+      "Turn off Edit 2D Transfer Function in the Color Map Editor, or choose the "
+      "representation Volume.";
+  }
+  if (!text.empty() && text != this->Reported)
+  {
+    vtkWarningMacro(<< text);
+  }
+  this->Reported = text;
 }
 
 void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()

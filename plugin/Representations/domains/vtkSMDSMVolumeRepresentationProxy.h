@@ -17,6 +17,8 @@
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 #include "vtkSMRepresentationProxy.h"
 
+#include <string> // for ivars
+
 class vtkSMPVRepresentationProxy;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkSMDSMVolumeRepresentationProxy
@@ -39,8 +41,11 @@ private:
 
   void ChooseArray(vtkSMPVRepresentationProxy* display);
   void ChooseSlices();
+  /// Warns of what the panels offer and a volume does not show, when the user has chosen it.
+  void ReportIgnored(vtkSMPVRepresentationProxy* display);
 
   bool HasChosen = false; ///< an array
+  std::string Reported;
 };
 
 #endif

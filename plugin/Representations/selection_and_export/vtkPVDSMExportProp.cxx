@@ -2,6 +2,7 @@
 #include "vtkPVDSMExportProp.h"
 
 #include "vtkPVDSMExportInformation.h"
+#include "vtkPVDSMExportSource.h"
 
 #include "vtkActor.h"
 #include "vtkCollection.h"
@@ -18,6 +19,7 @@
 #include "vtkSMSession.h"
 #include "vtkSessionIterator.h"
 
+#include <string>
 #include <utility>
 
 namespace
@@ -31,7 +33,7 @@ vtkSMProxy* FindProxy(vtkSMSession* session, vtkObject* representation)
   {
     auto* proxy = vtkSMProxy::SafeDownCast(objects->GetItemAsObject(index));
     // A part of what the view shows, which has its properties.
-    for (const char* name : { "DSMIsoArray", "DSMLineRadius" })
+    for (const char* name : { "DSMIsoArray", "DSMLineRadius", "DSMScattering", "DSMSliceX" })
     {
       vtkSMProperty* property = proxy ? proxy->GetProperty(name) : nullptr;
       if (property && property->GetParent()->GetClientSideObject() == representation)
@@ -113,6 +115,13 @@ std::vector<vtkSmartPointer<vtkActor>> vtkPVDSMExportProp::MakeActors()
   vtkSMProxy* proxy = FindProxy(this->Representation);
   if (!proxy)
   {
+    return {};
+  }
+  auto* const source = dynamic_cast<vtkPVDSMExportSource*>(this->Representation);
+  const std::string obstacle = source ? source->GetExportObstacle() : "";
+  if (!obstacle.empty())
+  {
+    vtkErrorMacro(<< obstacle);
     return {};
   }
   vtkNew<vtkPVDSMExportInformation> information;

@@ -4,6 +4,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -16,6 +17,8 @@ public:
 
   /// Local: what is shown of this rank's data, in the dataset's coordinates; empty where nothing is known.
   virtual std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() = 0;
+  /// The error of an export: why what is shown has no triangles, and what to do. Empty where it has.
+  virtual std::string GetExportObstacle() const { return {}; }
 };
 
 #endif

@@ -562,4 +562,27 @@ TEST_F(TestMediumIntegral, OfLightThatIsScattered)
   EXPECT_LT(this->Compare(GetAlongZ(), expect), 0.5);
 }
 
+TEST_F(TestMediumIntegral, OfLightFromAllSides)
+{
+  constexpr double extinction = 0.8;
+  rt::MediumLook look;
+  look.Shade = true;
+  look.Surface.Ambient = 0.0f;
+  look.Surface.Diffuse = 0.5f;
+  look.Scattering = 0.25;
+  this->Add([](const glm::dvec3&) { return 0.5; },
+    { { 0.0, { 0.9, 0.6, 0.3, extinction } }, { 1.0, { 0.9, 0.6, 0.3, extinction } } },
+    Blending::Composite, look);
+  this->World.Transport.Surroundings.Lower = glm::vec3(0.2f);
+  this->World.Transport.Surroundings.Upper = glm::vec3(0.6f);
+  const auto expect = [&](const rt::Ray& ray, std::vector<glm::dvec3>&)
+  {
+    const bool isInside = std::abs(ray.Origin.x) < 1.0 && std::abs(ray.Origin.y) < 1.0;
+    const double covered = isInside ? 1.0 - std::exp(-2.0 * extinction) : 0.0;
+    constexpr double lit = 0.4 * (0.75 * 0.5 + 0.25);
+    return glm::dvec4(covered * lit * glm::dvec3(0.9, 0.6, 0.3), covered);
+  };
+  EXPECT_LT(this->Compare(GetAlongZ(), expect), 0.5);
+}
+
 } // namespace

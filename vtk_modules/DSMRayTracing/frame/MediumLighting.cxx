@@ -224,6 +224,15 @@ Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& positio
   const double ambient = arriving ? arriving->Ambient : 1.0;
   const double surfacePart = 1.0 - look.Scattering;
   glm::dvec3 lit = look.Shade ? glm::dvec3(0.0) : surfacePart * color;
+  const Environment& surroundings = this->World.Transport.Surroundings;
+  if (!surroundings.IsBlack())
+  {
+    const bool isBehind = glm::dot(piece.Normal, toViewer) < 0.0;
+    const glm::dvec3 onto = surroundings.GetLightOnto(isBehind ? -piece.Normal : piece.Normal);
+    const glm::dvec3 fromAll = surroundings.GetLight(glm::dvec3(0.0));
+    lit += ambient * color *
+      ((look.Shade ? surfacePart * surface.Diffuse : 0.0) * onto + look.Scattering * fromAll);
+  }
   for (std::size_t number = 0; number < this->World.Lights.size(); ++number)
   {
     const Light& lamp = this->World.Lights[number];

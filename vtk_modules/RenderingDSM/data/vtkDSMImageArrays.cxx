@@ -84,7 +84,15 @@ vtkDataArray* vtkDSMImageArrays::Find(vtkDataObject* part, const Choice& choice,
   return array;
 }
 
-vtkDSMImageArrays::vtkDSMImageArrays(
+vtkDSMImageArrays::vtkDSMImageArrays(dsm::Messenger& messenger,
+  const std::vector<vtkSmartPointer<vtkDataObject>>& parts,
+  const std::vector<vtkSmartPointer<vtkDataObject>>& all)
+  : Components(Gather(messenger, parts))
+  , WithHidden(Gather(messenger, all))
+{
+}
+
+vtkDSMImageArrays::Counts vtkDSMImageArrays::Gather(
   dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
 {
   std::vector<char> mine;
@@ -119,14 +127,16 @@ vtkDSMImageArrays::vtkDSMImageArrays(
     appendAll(part->GetAttributes(vtkDataObject::POINT), "0");
     appendAll(part->GetAttributes(vtkDataObject::CELL), "1");
   }
+  Counts counts;
   const std::vector<char> all = vtkDSMGather::Items(messenger, mine);
   for (auto place = all.begin(); place != all.end();)
   {
     const auto name = std::find(place, all.end(), '\0') + 1;
     const auto components = std::find(name, all.end(), '\0') + 1;
-    this->Components[*place == '1' ? 1 : 0][&*name] = std::stoi(&*components);
+    counts[*place == '1' ? 1 : 0][&*name] = std::stoi(&*components);
     place = std::find(components, all.end(), '\0') + 1;
   }
+  return counts;
 }
 
 vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) const
@@ -199,6 +209,11 @@ void vtkDSMImageArrays::Refuse(
     throw dsm::Error(array +
       " does not contain colors: colors have up to four components and a type other than char. "
       "Turn on Map Scalars.");
+  }
+  const auto& withHidden = this->WithHidden[choice.OnCells ? 1 : 0];
+  if (withHidden.find(choice.Name) != withHidden.end())
+  {
+    throw Missing("");
   }
   if (is(State::OnCells) && !choice.Name.empty())
   {

@@ -9,6 +9,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -64,7 +65,7 @@ public:
     bool IsUsable() const { return this->Found == State::Usable; }
   };
 
-  /// There is no such array.
+  /// There is no such array. Without a text, a hidden part has it, so nothing is wrong.
   class Missing : public dsm::Error
   {
   public:
@@ -72,9 +73,10 @@ public:
   };
 
   vtkDSMImageArrays() = default;
-  /// Collective. `parts`: this rank's, with attributes of points or of cells, or of both.
-  vtkDSMImageArrays(
-    dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkDataObject>>& parts);
+  /// Collective. `parts`: this rank's, with attributes of points or of cells, or of both. `all`: the same with hidden ones.
+  vtkDSMImageArrays(dsm::Messenger& messenger,
+    const std::vector<vtkSmartPointer<vtkDataObject>>& parts,
+    const std::vector<vtkSmartPointer<vtkDataObject>>& all = {});
 
   /// Null where the part's array is not usable; `info` says why.
   static vtkDataArray* Find(vtkDataObject* part, const Choice& choice, Info& info);
@@ -93,7 +95,13 @@ public:
 
 private:
   /// All ranks' numeric ones, of points and of cells, and the active scalars, of no name: number of components.
-  std::map<std::string, int> Components[2];
+  using Counts = std::array<std::map<std::string, int>, 2>;
+  /// Collective.
+  static Counts Gather(
+    dsm::Messenger& messenger, const std::vector<vtkSmartPointer<vtkDataObject>>& parts);
+
+  Counts Components;
+  Counts WithHidden; ///< of hidden parts, too
 };
 
 #endif

@@ -302,18 +302,23 @@ void vtkDSMMeshData::CollectSurfaces(
   {
     vtkPolyData* data = this->Blocks[index].Data;
     const std::uint32_t group = this->Groups[index];
-    if (!this->Blocks[index].Appearance.Visible)
+    const bool isVisible = this->Blocks[index].Appearance.Visible != 0;
+    if (data->GetNumberOfCells() > 0)
+    {
+      // An array that only hidden blocks have is not missing.
+      const vtkDSMMeshColors colors(this->Input.Mapper, data);
+      if (isVisible || colors.GetState() == vtkDSMMeshColors::State::Usable)
+      {
+        reports.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
+      }
+    }
+    if (!isVisible)
     {
       continue;
     }
-    if (data->GetNumberOfCells() > 0)
+    if (data->GetNumberOfPolys() > 0 || data->GetNumberOfStrips() > 0)
     {
-      const vtkDSMMeshColors colors(this->Input.Mapper, data);
-      reports.push_back({ colors.GetState(), 0, colors.GetLength(), colors.GetExpectedLength() });
-      if (data->GetNumberOfPolys() > 0 || data->GetNumberOfStrips() > 0)
-      {
-        this->AddSurface(group, data);
-      }
+      this->AddSurface(group, data);
     }
     for (const auto& solid : { solids.MakeTubes(data), solids.MakeSpheres(data) })
     {

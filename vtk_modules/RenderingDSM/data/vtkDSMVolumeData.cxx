@@ -21,13 +21,16 @@
 #include <set>
 
 vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
-  const Chooser& choose, const vtkDSMBlockLooks& looks)
+  vtkDataObject* original, const Chooser& choose, const vtkDSMBlockLooks& looks)
   : Group(std::move(group))
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
   std::vector<double> myCoordinates;
-  const std::vector<vtkDSMBlockLook> myLooks = this->Collect(data, looks);
+  std::vector<vtkSmartPointer<vtkDataObject>> withHidden;
+  AddVolumes(data, withHidden);
+  AddVolumes(original, withHidden);
+  const std::vector<vtkDSMBlockLook> myLooks = this->Collect(data, looks, !withHidden.empty());
   messenger.RunTogether("Reading the volume",
     [&]
     {
@@ -54,7 +57,7 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
         all.push_back(part.Data);
       }
     });
-  this->Arrays = vtkDSMImageArrays(messenger, all);
+  this->Arrays = vtkDSMImageArrays(messenger, all, withHidden);
   this->Levels = vtkDSMLevelData::Create(this->Group, this->LevelParts);
   messenger.RunTogether("Joining the volume's pieces",
     [&] { this->Plan = bricks::LatticePlan(this->Pieces, {}, this->Coordinates); });

@@ -78,9 +78,9 @@ public:
   /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset of any
   /// but AMR, whose other blocks are left out, or null; `looks` are of its blocks.
   /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
-  /// that the blocks have in common.
+  /// that the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
-    const Chooser& choose, const vtkDSMBlockLooks& looks);
+    vtkDataObject* original, const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
 
   /// Returns whether the division of blocks into volumes depends on the arrays.
@@ -143,8 +143,12 @@ public:
     const std::string& purpose, const std::function<void(double)>& progress) const;
 
 private:
-  /// Collective. Sorts this rank's data into images and parts of levels. Returns the looks of the images.
-  std::vector<vtkDSMBlockLook> Collect(vtkDataObject* data, const vtkDSMBlockLooks& looks);
+  /// Collective. Sorts this rank's data into images and parts of levels. Returns the looks of the images. `hasVolumes`:
+  /// there are volumes here, which may be hidden.
+  std::vector<vtkDSMBlockLook> Collect(
+    vtkDataObject* data, const vtkDSMBlockLooks& looks, bool hasVolumes);
+  /// Local. Adds the volumes of a dataset, which may be null, or of its blocks, hidden ones included.
+  static void AddVolumes(vtkDataObject* data, std::vector<vtkSmartPointer<vtkDataObject>>& volumes);
   /// Distributes the coordinates of all rectilinear pieces, one piece and axis after the other.
   void SetCoordinates(const std::vector<double>& all);
   /// Collective: takes apart what is no one volume.

@@ -11,6 +11,7 @@
 #include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkUniformGridAMR.h"
 
 #include <algorithm>
@@ -50,6 +51,18 @@ void ForEachLeaf(vtkCompositeDataSet* data, const Visit& visit)
   }
 }
 
+/// Returns 0 for data that are no grid of values.
+int GetDimension(vtkDataObject* object)
+{
+  auto* const image = vtkImageData::SafeDownCast(object);
+  auto* const grid = vtkRectilinearGrid::SafeDownCast(object);
+  auto* const trees = vtkHyperTreeGrid::SafeDownCast(object);
+  return image ? image->GetDataDimension()
+    : grid     ? grid->GetDataDimension()
+    : trees    ? static_cast<int>(trees->GetDimension())
+               : 0;
+}
+
 vtkDSMBlockLook FindLook(const vtkDSMBlockLooks& looks, int leaf)
 {
   const auto look = looks.find(static_cast<unsigned int>(leaf));
@@ -59,7 +72,7 @@ vtkDSMBlockLook FindLook(const vtkDSMBlockLooks& looks, int leaf)
 } // namespace
 
 std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
-  vtkDataObject* data, const vtkDSMBlockLooks& looks)
+  vtkDataObject* data, const vtkDSMBlockLooks& looks, bool hasVolumes)
 {
   std::vector<vtkDSMBlockLook> ofImages;
   bool isAnyOther = false;
@@ -130,7 +143,7 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
     const auto all = messenger.AllGatherValue(std::uint8_t(is ? 1 : 0));
     return *std::max_element(all.begin(), all.end()) != 0;
   };
-  const bool isAny = isOf(!this->Images.empty() || !this->LevelParts.empty());
+  const bool isAny = isOf(hasVolumes || !this->Images.empty() || !this->LevelParts.empty());
   if (isOf(isAnyOther) && !isAny)
   {
     throw dsm::Error(
@@ -138,6 +151,26 @@ std::vector<vtkDSMBlockLook> vtkDSMVolumeData::Collect(
       "grids, one of which ray tracing requires. Apply Resample To Image first.");
   }
   return ofImages;
+}
+
+void vtkDSMVolumeData::AddVolumes(
+  vtkDataObject* data, std::vector<vtkSmartPointer<vtkDataObject>>& volumes)
+{
+  const auto add = [&volumes](vtkDataObject* object, int, int)
+  {
+    if (GetDimension(object) == 3)
+    {
+      volumes.emplace_back(object);
+    }
+  };
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    ForEachLeaf(blocks, add);
+  }
+  else if (data)
+  {
+    add(data, 0, 0);
+  }
 }
 
 std::vector<vtkDSMVolumeData::Block> vtkDSMVolumeData::GetBlocks(std::size_t part) const

@@ -16,6 +16,8 @@ public:
     this->Data = data;
     this->Time = data ? GetTime(data) : 0;
   }
+  /// Null if they are gone, or unknown.
+  vtkDataObject* Get() const { return this->Data; }
   /// Returns whether the original data have changed. False if unknown.
   bool HasChanged() const
   {

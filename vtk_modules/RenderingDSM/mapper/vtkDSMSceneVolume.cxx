@@ -224,11 +224,11 @@ void vtkDSMSceneVolume::TakeData(const std::shared_ptr<vtkDSMRankGroup>& group)
   this->SeenLooks = mapper->GetBlockLooks();
   this->SeenShown.clear();
   this->Taken = true;
-  this->Reported.clear();
+  this->Reported = this->MissingFeatures;
   try
   {
     this->Data = std::make_unique<vtkDSMVolumeData>(
-      group, mapper->GetDataObjectInput(),
+      group, mapper->GetDataObjectInput(), mapper->GetOriginalData(),
       [this](const vtkDSMImageArrays& arrays)
       { return this->SeenShown = this->GetLook().GetShown(arrays); },
       this->SeenLooks);

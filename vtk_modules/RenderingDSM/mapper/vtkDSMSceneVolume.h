@@ -204,6 +204,7 @@ private:
     MediumColors[2];
   /// By the map, and the opacity function and its time.
   vtkDSMKept<std::tuple<KeptColors, vtkPiecewiseFunction*, vtkMTimeType>, KeptColors> SliceColors;
+  std::vector<std::string> MissingFeatures; ///< warnings that new data do not repeat
   std::string DataFailure;
   unsigned SettingsVersion = 0; ///< the group's at the last Update
 };

@@ -40,7 +40,10 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
 
 void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
 {
-  look.FindMissingFeatures(this->Data->GetArrays(), this->Warnings);
+  this->MissingFeatures.clear();
+  look.FindMissingFeatures(this->Data->GetArrays(), this->MissingFeatures);
+  this->Warnings.insert(
+    this->Warnings.end(), this->MissingFeatures.begin(), this->MissingFeatures.end());
   if (look.GetComponents(this->Data->GetArrays()) == vtkDSMVolumeLook::Components::Refused)
   {
     this->Messages.push_back(

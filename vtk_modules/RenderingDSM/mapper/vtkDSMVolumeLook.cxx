@@ -7,6 +7,7 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkCellData.h"
+#include "vtkColorTransferFunction.h"
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
 #include "vtkPlane.h"
@@ -199,6 +200,15 @@ void vtkDSMVolumeLook::FindMissingFeatures(
     "opacities from another array, in this blend mode",
     "Call SetBlendModeToComposite() or SetOpacityArray(\"\") on the mapper. In ParaView, set Blend "
     "Mode to Composite, or turn off Use Separate Opacity Array.");
+  warn(property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION,
+    "the nearest sample (VTK's default) instead of linear interpolation",
+    "Call SetInterpolationTypeToLinear(). For labels, draw slices with InterpolateSlicesOff().");
+  warn(property->GetColorChannels() == 3 &&
+      property->GetRGBTransferFunction()->GetIndexedLookup() != 0,
+    "a color for each category",
+    "Call IndexedLookupOff() on the color function, or draw slices with InterpolateSlicesOff(). In "
+    "ParaView, turn off Interpret Values As Categories, or use DSM Slices without Interpolate "
+    "Values.");
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;

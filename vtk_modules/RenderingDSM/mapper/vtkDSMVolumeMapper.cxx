@@ -105,6 +105,11 @@ void vtkDSMVolumeMapper::SetOriginalData(vtkDataObject* data)
   this->Original->Set(data);
 }
 
+vtkDataObject* vtkDSMVolumeMapper::GetOriginalData() const
+{
+  return this->Original->Get();
+}
+
 bool vtkDSMVolumeMapper::HasOldData() const
 {
   return this->Original->HasChanged();

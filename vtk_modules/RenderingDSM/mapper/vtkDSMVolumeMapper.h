@@ -74,9 +74,11 @@ public:
   /**
    * For whoever gives the mapper copies, or parts, of a pipeline's data: what they were made from, which is not kept
    * alive. Once that has changed, what this mapper has is old: where another one shows the new data, and there is room
-   * for one of both only, the bricks of the old ones go first.
+   * for one of both only, the bricks of the old ones go first. Arrays that only left-out blocks have are not reported as
+   * missing.
    */
   void SetOriginalData(vtkDataObject* data);
+  vtkDataObject* GetOriginalData() const;
   bool HasOldData() const;
   ///@}
 

@@ -51,7 +51,7 @@ dsm_setting(HostSharing OWNER ranks TYPE bool DEFAULT 1
   LABEL "Share within Hosts"
   TEXT "Ranks on one host read each other's bricks in place, without a copy or a message. Has no effect when page based. Off: each rank behaves as if it ran on a host of its own.")
 dsm_setting(Memory OWNER ranks TYPE int DEFAULT 0 RANGE 0
-  LABEL "Memory (MiB per Rank)"
+  LABEL "Memory (MiB per Rank)" ZERO "automatic"
   TEXT "Memory limit of each rank in MiB, for its own bricks, copies and the cache. 0 uses half of the host's available memory, divided by the ranks on the host, and at least 64 MiB.")
 dsm_setting(ScratchDirectory OWNER ranks TYPE directory
   LABEL "Scratch Directory"
@@ -60,15 +60,15 @@ dsm_setting(CoarserDataWhileMoving OWNER ranks TYPE bool DEFAULT 0
   LABEL "Coarser Data While Moving"
   TEXT "Show a coarser level of a volume file while the camera moves and bricks are being fetched. Requires a file with several levels (dsm_convert --levels, Save Data, OME-Zarr). Still pictures, screenshots and scripts always show the finest level.")
 dsm_setting(CacheSize OWNER ranks TYPE int DEFAULT 256 RANGE 1
-  LABEL "Cache (MiB per Rank)"
-  TEXT "Cache size of each rank in MiB, for bricks owned by other ranks.")
+  LABEL "Cache Limit (MiB per Rank)"
+  TEXT "Limit of each rank's cache in MiB, for bricks owned by other ranks.")
 dsm_setting(Threads METHOD NumberOfThreads OWNER ranks TYPE int DEFAULT 0 RANGE 0 1024 SLIDER 0 1024
-  LABEL "Threads per Rank"
+  LABEL "Threads per Rank" ZERO "automatic"
   TEXT "Number of tracing threads of each rank. 0 divides the host's cores by the ranks on the host.")
 dsm_setting(Scheduler OWNER ranks TYPE enum DEFAULT 0
   ENTRIES WorkStealing "Work stealing" CentralQueue "Central queue"
   LABEL "Scheduler"
   TEXT "How tiles of the picture are distributed to ranks. Work stealing: a rank starts with the tiles that it traced in the last picture, and takes tiles from other ranks when it has none left. Central queue: rank 0 deals out tiles. The picture is the same.")
 dsm_setting(SilenceLimit OWNER ranks TYPE int DEFAULT 60 RANGE 0
-  LABEL "Silence Limit (s)"
+  LABEL "Silence Limit (s)" ZERO "none"
   TEXT "Time in seconds after which an unresponsive rank is treated as failed. Frames then end on the other ranks with an error that names the rank. A rank that reads or computes is not unresponsive. 0 waits forever.")
