@@ -2,6 +2,7 @@
 #include "vtkSMDSMVolumeRepresentationProxy.h"
 
 #include "vtkPVDSMNoUndo.h"
+#include "vtkSMDSMRepresentationProxy.h"
 
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
@@ -81,27 +82,16 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     return;
   }
-  if (isOfSlices)
+  // The proxy with the properties that the panel shows was told of the update before this one.
+  vtkSMProxy* const isosurfaces = display->GetProperty("DSMCroppingBox")->GetParent();
+  if (auto* const shown = vtkSMDSMRepresentationProxy::SafeDownCast(isosurfaces))
   {
-    this->ChooseSlices();
+    shown->FollowData();
   }
   if (!this->HasChosen)
   {
     this->ChooseArray(display);
   }
-}
-
-void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()
-{
-  const vtkPVDSMNoUndo noUndo;
-  for (const char* name : { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" })
-  {
-    if (vtkSMPropertyHelper(this, name).GetAsInt() < 0)
-    {
-      this->GetProperty(name)->ResetToDomainDefaults();
-    }
-  }
-  this->UpdateVTKObjects();
 }
 
 /// The first one of points, or else of cells.
