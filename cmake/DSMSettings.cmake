@@ -11,11 +11,12 @@
 #   SLIDER   range of the panel's slider, where it has one
 #   CHOICES  numbers that the panel's slider offers instead
 #   ENTRIES  of an enum: a name in C++ and a text for each value from 0
+#   NEEDS    light: no effect on a volume without Shade and Scattering; no_volume: none on a volume
 #   PANEL    first: below Representation; default or advanced: in the group Ray Tracing. Without: not in the panel.
 #   PAGE_DEFAULT, PAGE_ENTRIES  of what is no setting of the ranks, but on the settings page: default, number of entries
 set(DSM_SETTINGS)
 function (dsm_setting name)
-  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
+  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL NEEDS PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
   set(lists RANGE SLIDER ENTRIES)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "${keys}" "${lists}")
   if (NOT arg_METHOD)
@@ -239,6 +240,10 @@ function (dsm_define_property result name isPage)
     endif ()
     if (DSM_${name}_PANEL STREQUAL "first")
       string(APPEND hints "${DSM_WHEN_TRACED}")
+    endif ()
+    if (DSM_${name}_NEEDS)
+      string(TOUPPER "DSM_WHEN_${DSM_${name}_NEEDS}" when)
+      string(APPEND hints "${${when}}")
     endif ()
     if (isOnPage)
       string(APPEND attributes " no_custom_default=\"1\"")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMWrittenProperties.h"
 
+#include "vtkPVDSMHints.h"
+
 #include "vtkPVXMLElement.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
@@ -33,40 +35,13 @@ vtkPVXMLElement* FindMark(vtkPVXMLElement* hints)
   return link && link->GetAttributeOrEmpty("proxy") == std::string(Unused) ? link : nullptr;
 }
 
-/// Hints are no values, but ParaView takes a property with other hints for one with another value.
-struct Quiet final : vtkSMProperty
-{
-  static void SetHints(vtkSMProperty& property, vtkPVXMLElement* hints)
-  {
-    (property.*(&Quiet::SetBlockModifiedEvents))(true);
-    property.SetHints(hints);
-    (property.*(&Quiet::SetBlockModifiedEvents))(false);
-  }
-};
-
-/// The hints in a definition are those of all displays, so a display gets hints of its own.
 void Mark(vtkSMProperty* property, bool isUnused)
 {
-  vtkPVXMLElement* const before = property->GetHints();
-  vtkPVXMLElement* const mark = FindMark(before);
-  if ((mark != nullptr) == isUnused)
+  vtkPVXMLElement* const mark = FindMark(property->GetHints());
+  if ((mark != nullptr) != isUnused)
   {
-    return;
+    vtkPVDSMHints::Change(property, isUnused ? MakeMark().Get() : nullptr, mark);
   }
-  const auto hints = vtkSmartPointer<vtkPVXMLElement>::New();
-  hints->SetName("Hints");
-  if (isUnused)
-  {
-    hints->AddNestedElement(MakeMark());
-  }
-  for (unsigned int number = 0; before && number < before->GetNumberOfNestedElements(); ++number)
-  {
-    if (before->GetNestedElement(number) != mark)
-    {
-      hints->AddNestedElement(before->GetNestedElement(number), 0);
-    }
-  }
-  Quiet::SetHints(*property, hints);
 }
 
 } // namespace
