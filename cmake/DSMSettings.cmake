@@ -11,12 +11,13 @@
 #   SLIDER   range of the panel's slider, where it has one
 #   CHOICES  numbers that the panel's slider offers instead
 #   ENTRIES  of an enum: a name in C++ and a text for each value from 0
+#   NEEDS    light: no effect on a volume without Shade and Scattering; no_volume: none on a volume
 #   PANEL    first: below Representation; default or advanced: in the group Ray Tracing. Without: not in the panel.
 #   ZERO     what the value 0 means, on the settings page
 #   PAGE_DEFAULT, PAGE_ENTRIES  of what is no setting of the ranks, but on the settings page: default, number of entries
 set(DSM_SETTINGS)
 function (dsm_setting name)
-  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL ZERO PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
+  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL NEEDS ZERO PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
   set(lists RANGE SLIDER ENTRIES)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "${keys}" "${lists}")
   if (NOT arg_METHOD)
@@ -244,6 +245,10 @@ function (dsm_define_property result name isPage)
     endif ()
     if (DSM_${name}_PANEL STREQUAL "first")
       string(APPEND hints "${DSM_WHEN_TRACED}")
+    endif ()
+    if (DSM_${name}_NEEDS)
+      string(TOUPPER "DSM_WHEN_${DSM_${name}_NEEDS}" when)
+      string(APPEND hints "${${when}}")
     endif ()
     if (isOnPage)
       string(APPEND attributes " no_custom_default=\"1\"")

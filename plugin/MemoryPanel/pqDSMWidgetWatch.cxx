@@ -2,15 +2,19 @@
 #include "pqDSMWidgetWatch.h"
 
 #include "pqDoubleRangeWidget.h"
+#include "pqDoubleVectorPropertyWidget.h"
+#include "pqHighlightableToolButton.h"
 #include "pqInteractivePropertyWidget.h"
 #include "pqScaleByButton.h"
 #include "pqUndoStack.h"
 #include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 
 #include <QAbstractButton>
 #include <QCoreApplication>
 #include <QEvent>
+#include <QLabel>
 #include <QSlider>
 #include <QTabBar>
 
@@ -70,6 +74,26 @@ void PlaceAgain(pqInteractivePropertyWidget* box)
   }
 }
 
+/// ParaView makes the reset button green when the range changes, as it does when the data have been shown.
+void KeepResetButtonPlain(const pqDoubleVectorPropertyWidget* isovalue)
+{
+  auto* const button = isovalue->findChild<pqHighlightableToolButton*>("Reset");
+  vtkSMProperty* const automatic = isovalue->proxy()->GetProperty("DSMIsoValueAutomatic");
+  if (!button || !automatic)
+  {
+    return;
+  }
+  const auto clear = [button, automatic]
+  {
+    if (vtkSMPropertyHelper(automatic).GetAsInt() != 0)
+    {
+      button->clear();
+    }
+  };
+  QObject::connect(isovalue, &pqDoubleVectorPropertyWidget::highlightResetButton, button, clear);
+  clear();
+}
+
 /// Makes the isovalue's slider wide enough to drag, and hides the multiply button beside it.
 void WidenSlider(const pqPropertyWidget* isovalue)
 {
@@ -121,10 +145,24 @@ bool pqDSMWidgetWatch::eventFilter(QObject* watched, QEvent* event)
     OpenOnGeneral(watched->findChild<QTabBar*>("tabBar"));
   }
   const auto* const ofProperty = qobject_cast<pqPropertyWidget*>(watched);
-  if (ofProperty && ofProperty->property() && ofProperty->proxy() &&
-    ofProperty->property() == ofProperty->proxy()->GetProperty("DSMIsoValue"))
+  const auto isOf = [ofProperty](const char* name)
+  {
+    return ofProperty && ofProperty->property() && ofProperty->proxy() &&
+      ofProperty->property() == ofProperty->proxy()->GetProperty(name);
+  };
+  if (isOf("DSMIsoValue"))
   {
     WidenSlider(ofProperty);
+    if (const auto* const number = qobject_cast<const pqDoubleVectorPropertyWidget*>(ofProperty))
+    {
+      KeepResetButtonPlain(number);
+    }
+  }
+  auto* const range =
+    isOf("DSMIsoValues") ? ofProperty->findChild<QLabel*>("ScalarRangeLabel") : nullptr;
+  if (range)
+  {
+    range->hide();
   }
   auto* const widget = qobject_cast<pqInteractivePropertyWidget*>(watched);
   if (widget && widget->proxy() && widget->proxy()->GetProperty("DSMCroppingBox"))

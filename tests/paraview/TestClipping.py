@@ -94,3 +94,50 @@ mesh.DSMCropping = 1
 mesh.DSMCroppingBox = [0.0, 24.0, 5.0, 24.0, 0.0, 24.0]
 source, traced, surface = ball, mesh, ball
 compare("clipped mesh", [([12.0, 12.0, 15.0], normal), ([0, 5, 0], [0, 1, 0])])
+simple.Hide(ball, view)
+
+# A domain that moves: a box, a plane and slices that the user has not placed are in each step what they are in the first
+# one; what the user has placed stays, and says so when nothing is left.
+moving = image_source("""
+time = request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()) or 0.0
+image.SetExtent(piece)
+image.SetOrigin(30.0 * time, 0.0, 0.0)
+add(image, distance(piece))
+""")
+moving.ScriptRequestInformation += TIME_STEPS
+moving.UpdatePipelineInformation()
+display = show(moving, view, [0.7], "f", DSMCropping=1, DSMClip=1)
+place_camera(view)
+position, focus = list(view.CameraPosition), list(view.CameraFocalPoint)
+
+
+def look(step):
+    view.ViewTime = step
+    for name, place in (("CameraPosition", position), ("CameraFocalPoint", focus)):
+        setattr(view, name, [place[0] + 30.0 * step, *place[1:]])
+    return render(view)
+
+
+for way in (REPRESENTATION, "DSM Volume", "DSM Slices"):
+    display.SetRepresentationType(way)
+    render(view)
+    with Messages() as messages:
+        pictures = [look(step) for step in (0.0, 2.0, 1.0)]
+    check(get_covered(pictures[0]).mean() > 0.01, f"{way}: half of it is there")
+    check(abs(pictures[0] - pictures[1]).max() <= 2 and abs(pictures[0] - pictures[2]).max() <= 2, "in each step")
+    check("hides" not in messages.text, f"and nothing is amiss: {messages.text}")
+check(list(display.DSMCroppingBox) == [30.0, 54.0, 0.0, 24.0, 0.0, 24.0], f"the box is there: {display.DSMCroppingBox}")
+check(list(display.DSMClipOrigin) == [42.0, 12.0, 12.0], f"and the plane: {display.DSMClipOrigin}")
+display.SetRepresentationType(REPRESENTATION)
+display.DSMClipOrigin = [40.0, 12.0, 12.0]
+with Messages() as messages:
+    check(get_covered(look(1.0)).any() and not get_covered(look(0.0)).any(), "a plane that was placed stays")
+    look(0.0)
+check(list(display.DSMClipOrigin) == [40.0, 12.0, 12.0], "where it was placed")
+check(messages.text.count("clipping plane hides the whole dataset") == 1, f"which is said once: {messages.text}")
+display.DSMClip = 0
+display.DSMCroppingPosition = [50.0, 0.0, 0.0]
+with Messages() as messages:
+    look(2.0)
+    check(not get_covered(look(0.0)).any(), "a box that was moved stays, too")
+check("cropping box hides the whole dataset, which is at x 0 to 24" in messages.text, f"which is said: {messages.text}")

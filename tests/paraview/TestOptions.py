@@ -60,13 +60,24 @@ second.DSMMaxBounces = 4
 check(first.DSMMaxBounces == 4, "a hidden display may be asked, too")
 second.DSMMaxBounces = 3
 
-# Who comes later; who is shown in another way, or in another view, has no say.
+# Who comes later, in whichever way it is shown; who is in another view has no say.
 sphere = simple.Sphere()
 third = simple.Show(sphere, view)
 third.Representation = "Surface"
-check(third.DSMShadows == 0 and first.DSMShadows == 1, "a Surface leaves the light alone")
+check(read(third) == LIGHT and first.DSMShadows == 1, "a Surface tells the light, and leaves it alone")
+third.DSMShadows = 0
 third.Representation = REPRESENTATION
-check(read(third) == LIGHT, "who is traced from now on takes the light as it is")
+check(first.DSMShadows == third.DSMShadows == 0, "what is set before the display is traced counts")
+third.DSMShadows = 1
+for way in ("DSM Slices", "DSM Volume"):
+    cube = simple.Wavelet(WholeExtent=[-2, 2] * 3)
+    late = simple.Show(cube, view)
+    late.SetRepresentationType(way)
+    check(read(late) == LIGHT, f"{way} that comes first tells the light, which is in effect")
+    late.DSMShadows = 0
+    check(first.DSMShadows == 0, "and switches it off")
+    late.DSMShadows = 1
+    simple.Delete(cube)
 other = create_view()
 elsewhere = show_traced(sphere, other)
 check(elsewhere.DSMShadows == 0, "another view has a light of its own")

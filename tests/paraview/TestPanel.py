@@ -75,3 +75,42 @@ for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True),
     check(not any("DSM" in label for label in labels), f"groups have names in ParaView's words: {labels}")
     for name in ("DSMMemory", "DSMThreads", "DSMScheduler", "DSMCacheSize"):
         check(proxy.GetProperty(name).GetPanelVisibility() == "never", name + " is on the settings page only")
+
+# What has no effect is hidden or disabled: the panel asks the decorators in a property's hints.
+
+
+def ask(element, proxy, mode):
+    """Whether the panel shows or enables what has these hints, expression or decorator."""
+    nested = [element.GetNestedElement(number) for number in range(element.GetNumberOfNestedElements())]
+    if element.GetName() == "PropertyWidgetDecorator" and element.GetAttribute("type") == "GenericDecorator":
+        asked = proxy.GetProperty(element.GetAttribute("property"))
+        if element.GetAttribute("mode") != mode or not asked:
+            return True
+        value = asked.GetElement(0)
+        text = f"{value:g}" if isinstance(value, float) else str(value)
+        return (text == element.GetAttribute("value")) != (element.GetAttribute("inverse") == "1")
+    answers = [ask(one, proxy, mode) for one in nested if one.GetName() in ("PropertyWidgetDecorator", "Expression")]
+    return any(answers) if element.GetAttribute("type") == "or" else all(answers)
+
+
+def is_active(display, name):
+    hints = display.SMProxy.GetProperty(name).GetHints()
+    return not hints or (ask(hints, display.SMProxy, "visibility") and ask(hints, display.SMProxy, "enabled_state"))
+
+
+SURFACES = ["Opacity", "PointSize", "LineWidth", "EdgeColor", "BackfaceRepresentation", "DSMReflectivity", "DSMMaxBounces"]
+LIT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMEnvironmentLight"]
+for source in (simple.Wavelet(), simple.AMRGaussianPulseSource(), simple.HyperTreeGridRandom()):
+    display = simple.Show(source, view)
+    for way in (REPRESENTATION, "DSM Slices", "DSM Volume"):
+        display.SetRepresentationType(way)
+        active = [name for name in SURFACES + LIT if is_active(display, name)]
+        expected = [] if way == "DSM Volume" else SURFACES + LIT
+        check(active == expected, f"{source.GetXMLName()} as {way} has {active}")
+    check(not is_active(display, "VolumeAnisotropy"), "nothing is scattered in a direction")
+    display.DSMScattering = 0.5
+    check(all(is_active(display, name) for name in LIT + ["VolumeAnisotropy"]), "until light is scattered")
+    display.DSMScattering = 0
+    display.Shade = 1
+    check(all(is_active(display, name) for name in LIT), "a shaded volume is lit, too")
+    simple.Delete(source)

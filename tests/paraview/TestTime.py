@@ -8,12 +8,6 @@ from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 load_plugin()
 view = create_view()
 
-TIME_STEPS = """
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
-information = self.GetExecutive().GetOutputInformation().GetInformationObject(0)
-information.Set(pipeline.TIME_STEPS(), [0.0, 1.0, 2.0], 3)
-information.Set(pipeline.TIME_RANGE(), [0.0, 2.0], 2)
-"""
 TIME_INFORMATION = IMAGE_SOURCE_INFORMATION % "0, 24, 0, 24, 0, 24" + TIME_STEPS
 steps = image_source("""
 time = request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP())

@@ -5,7 +5,7 @@ running it brings them back."""
 import re
 
 from dsm_testing import *
-from paraview import smtrace
+from paraview import smstate, smtrace
 
 load_plugin()
 CHANGES = {
@@ -60,8 +60,12 @@ ball = simple.Sphere()
 other = simple.CreateRenderView()
 ballDisplay = simple.Show(ball, other)
 ballDisplay.SetRepresentationType(REPRESENTATION)
+pipe = simple.Cylinder()
+simple.Show(pipe, other)
 simple.Render(other)
 text = smtrace.stop_trace()
+check("cylinder1Display.Representation" in text and "cylinder1Display.DSM" not in text, "a Surface is traced without ours")
+simple.Delete(pipe)
 set_first_look(0)
 check(ballDisplay.DSMLook == "With depth", "a display keeps the look with which it began")
 for name in list(CHANGES) + list(MESH_CHANGES):
@@ -80,4 +84,27 @@ check(found["SphereSource"].DSMLook == "With depth", "run again, it gives the ot
 check(read(found["DSMSampleVolume"], CHANGES) == expected[0], "run again, it gives the volume the same settings")
 check(read(found["ConeSource"], MESH_CHANGES) == expected[1], "and the mesh")
 for source in found:
-    check(found[source].Representation == REPRESENTATION, source + " is traced")
+    expected = "Surface" if source == "CylinderSource" else REPRESENTATION
+    check(found[source].Representation == expected, f"{source} is shown as {expected}")
+
+# Python states of what is shown in ParaView's own ways do without the plugin, whatever the kind of data.
+OURS = re.compile(r"Display\.(DSM\w+)")
+for source in simple.GetSources().values():
+    simple.Delete(source)
+states = simple.CreateRenderView()
+for kind in ("Wavelet", "AMRGaussianPulseSource", "HyperTreeGridRandom", "Cone"):
+    source = getattr(simple, kind)()
+    display = simple.Show(source, states)
+    display.Representation = "Outline"
+    simple.Render(states)
+    state = smstate.get_state()
+    check(not OURS.findall(state), f"{kind}: a Python state without ours")
+    # ParaView itself has no Volume of trees.
+    check("ScalarOpacity" not in state or not kind.startswith("HyperTree"), "nor what trees have of Volume")
+    display.SetRepresentationType(REPRESENTATION)
+    simple.Render(states)
+    check("DSMCroppingBox" in OURS.findall(smstate.get_state()), "ours are there when it is traced")
+    display.SetRepresentationType("Outline")
+    found = OURS.findall(smstate.get_state())
+    check(not found, f"and go when it is not: {found}")
+    simple.Delete(source)

@@ -133,3 +133,11 @@ picture = render(view)
 check(get_covered(picture).any(), "enough memory")
 check(display.DSMIsoValue == display.GetPropertyValue("DSMSuggestedIsoValue"), "and the data's isovalue")
 check_equal(render(view), picture, "which the picture has", 0)
+
+# An array is chosen, and no longer automatic, when it is set to what it is: by its name, or with its association.
+for chosen in ("RTData", ["POINTS", "RTData"]):
+    display = show_traced(simple.Wavelet(), view)
+    render(view)
+    check(display.DSMIsoArrayAutomatic == 1 and list(display.DSMIsoArray) == ["POINTS", "RTData"], "an array is automatic")
+    display.DSMIsoArray = chosen
+    check(display.DSMIsoArrayAutomatic == 0, f"until it is set to {chosen}")

@@ -180,6 +180,13 @@ from paraview import util
 util.SetOutputWholeExtent(self, [%s])
 """
 
+TIME_STEPS = """
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
+information = self.GetExecutive().GetOutputInformation().GetInformationObject(0)
+information.Set(pipeline.TIME_STEPS(), [0.0, 1.0, 2.0], 3)
+information.Set(pipeline.TIME_RANGE(), [0.0, 2.0], 2)
+"""
+
 IMAGE_SOURCE_IN_PARTS = """
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 self.GetOutputInformation(0).Set(vtkAlgorithm.CAN_PRODUCE_SUB_EXTENT(), 1)

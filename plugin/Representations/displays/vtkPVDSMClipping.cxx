@@ -2,6 +2,7 @@
 #include "vtkPVDSMClipping.h"
 
 #include "vtkAbstractMapper.h"
+#include "vtkBoundingBox.h"
 #include "vtkClipPolyData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -55,6 +56,27 @@ void vtkPVDSMClipping::ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWo
     transform->TransformNormal(normal, normal);
     AddPlane(mapper, origin, normal);
   }
+}
+
+const char* vtkPVDSMClipping::FindWhatHides(
+  vtkAbstractMapper* mapper, const vtkBoundingBox& box) const
+{
+  vtkPlaneCollection* const planes = mapper->GetClippingPlanes();
+  for (int number = 0; planes && number < planes->GetNumberOfItems(); ++number)
+  {
+    bool isVisible = false;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      double point[3];
+      box.GetCorner(corner, point);
+      isVisible = isVisible || planes->GetItem(number)->EvaluateFunction(point) >= 0.0;
+    }
+    if (!isVisible)
+    {
+      return this->Clips && number == 0 ? "clipping plane" : "cropping box";
+    }
+  }
+  return nullptr;
 }
 
 vtkSmartPointer<vtkPolyData> vtkPVDSMClipping::Clip(

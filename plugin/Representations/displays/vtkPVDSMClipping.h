@@ -7,6 +7,7 @@
 #include <array>
 
 class vtkAbstractMapper;
+class vtkBoundingBox;
 class vtkMatrix4x4;
 class vtkPolyData;
 
@@ -28,6 +29,10 @@ public:
 
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;
+
+  /// Returns what cuts a box in the world away as a whole, "clipping plane" or "cropping box", where one of the planes that
+  /// the mapper was given does; else null.
+  const char* FindWhatHides(vtkAbstractMapper* mapper, const vtkBoundingBox& box) const;
 
   /// Returns the visible part of polygons in the dataset's coordinates.
   vtkSmartPointer<vtkPolyData> Clip(vtkPolyData* polygons, vtkMatrix4x4* dataToWorld) const;

@@ -14,6 +14,7 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPVDataRepresentation.h"
 #include "vtkPVRenderView.h"
 #include "vtkPartitionedDataSet.h"
@@ -101,12 +102,13 @@ void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
   {
     this->Leave(); // with its bricks, which a dataset that is only hidden keeps
   }
-  if (!visible || !this->View || this->IsInView)
+  const bool enters = visible && this->View && !this->IsInView;
+  this->IsInView = this->IsInView || enters;
+  this->ShareOptions();
+  if (!enters)
   {
     return;
   }
-  this->IsInView = true;
-  this->ShareOptions();
   this->Scene = vtkPVDSMDelivery::FindScene(this->Representation, this->View);
   if (this->Scene)
   {
@@ -170,9 +172,10 @@ void vtkPVDSMTracedDisplay::SetMemoryOptions(vtkObject* options)
 
 void vtkPVDSMTracedDisplay::ShareOptions()
 {
-  if (this->IsInView && this->LightOptions && this->MemoryOptions)
+  if (this->View && this->LightOptions && this->MemoryOptions)
   {
-    vtkPVDSMSharedOptions::Join(this->View, this->LightOptions, this->MemoryOptions);
+    vtkPVDSMSharedOptions::Join(
+      this->View, this->LightOptions, this->MemoryOptions, this->IsInView);
   }
 }
 
@@ -237,6 +240,7 @@ void vtkPVDSMTracedDisplay::KeepData(const double* bounds, bool isTranslucent, v
   vtkInformation* inInfo, vtkInformation* outInfo)
 {
   const double* known = bounds && vtkBoundingBox::IsValid(bounds) ? bounds : nullptr;
+  this->Bounds = known ? vtkBoundingBox(known) : vtkBoundingBox();
   vtkPVDSMDelivery::KeepData(
     this->Representation, this->Placeholder, { known, isTranslucent, data }, inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
@@ -259,6 +263,7 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   {
     this->Clipping.ApplyTo(this->BesideMapper, matrix);
   }
+  this->TellWhatHides();
   const bool selecting = vtkPVDSMDelivery::IsSelecting(this->Representation->GetView());
   if (this->PrepareSelection && this->View)
   {
@@ -271,6 +276,24 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
   this->SelectionActor->SetUserMatrix(matrix);
   vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
+}
+
+void vtkPVDSMTracedDisplay::TellWhatHides()
+{
+  auto* const ranks = vtkMultiProcessController::GetGlobalController();
+  const char* const before = this->HiddenBy;
+  this->HiddenBy =
+    this->Bounds.IsValid() ? this->Clipping.FindWhatHides(this->Mapper, this->Bounds) : nullptr;
+  if (this->HiddenBy && this->HiddenBy != before && (!ranks || ranks->GetLocalProcessId() == 0))
+  {
+    double place[6];
+    this->Bounds.GetBounds(place);
+    vtkWarningWithObjectMacro(this->Representation,
+      << this->Representation->GetLogName() << ": the " << this->HiddenBy
+      << " hides the whole dataset, which is at x " << place[0] << " to " << place[1] << ", y "
+      << place[2] << " to " << place[3] << ", z " << place[4] << " to " << place[5]
+      << ". Move it there, or reset it to the bounds of the data.");
+  }
 }
 
 void vtkPVDSMTracedDisplay::ForwardProgress()

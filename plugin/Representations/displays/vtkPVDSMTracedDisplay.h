@@ -7,6 +7,7 @@
 #include "vtkPVDSMSelectionActor.h"
 #include "vtkPVDSMSelectionMapper.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkNew.h"
 #include "vtkPVRenderView.h"
 #include "vtkSmartPointer.h"
@@ -96,6 +97,8 @@ private:
   void Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
   void Leave();
   void ShareOptions();
+  /// Warns, on the first rank, when a plane or box begins to hide the dataset as a whole.
+  void TellWhatHides();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();
   /// Forwards progress events while the view renders; ParaView observes the representation only.
@@ -111,6 +114,8 @@ private:
   bool IsUpdated = false;               ///< during the view's current request
   vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
   bool IsInView = false;
+  vtkBoundingBox Bounds;          ///< of all ranks, world
+  const char* HiddenBy = nullptr; ///< what a warning was about
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkNew<vtkPVDSMExportProp> ExportProp;            ///< for exporters
   vtkNew<vtkPVDSMSelectionActor> SelectionActor;    ///< for selections

@@ -28,16 +28,6 @@ constexpr const char* Component = "DSMIsoComponent";
 constexpr const char* Range = "DSMValueRange";
 constexpr const char* Show = "DSMShow";
 constexpr int Isosurfaces = 0; // of DSMShow
-constexpr const char* Box = "DSMCroppingBox";
-
-/// Returns whether the bounds are those of missing data: inverted or, since ParaView 6, without
-/// extent.
-bool IsOfNothing(const vtkSMPropertyHelper& bounds)
-{
-  const auto isFlat = [&](unsigned int axis)
-  { return !(bounds.GetAsDouble(2 * axis) < bounds.GetAsDouble(2 * axis + 1)); };
-  return isFlat(0) && isFlat(1) && isFlat(2);
-}
 
 /// Components of the array that a property selects; 0 where the data do not have it.
 int CountComponents(vtkSMProperty* property)
@@ -114,6 +104,10 @@ void vtkSMDSMImageRepresentationProxy::SetAutomatic(
     }
     const bool isArray = property == self->GetProperty(Array);
     vtkSMPropertyHelper(self, isArray ? ArrayAutomatic : IsovalueAutomatic).Set(1);
+    if (isArray)
+    {
+      self->ChooseComponent();
+    }
   }
 }
 
@@ -180,9 +174,10 @@ void vtkSMDSMImageRepresentationProxy::SetPropertyModifiedFlag(const char* name,
   {
     return;
   }
-  if (std::string(name) == Array)
+  if (std::string(name) == Array && !this->IsChoosing)
   {
-    this->OnArray();
+    vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
+    this->ChooseComponent();
   }
   else if (std::string(name) == Isovalue && !this->IsChoosing)
   {
@@ -193,15 +188,6 @@ void vtkSMDSMImageRepresentationProxy::SetPropertyModifiedFlag(const char* name,
   {
     this->IsShownAutomatic = false;
   }
-}
-
-void vtkSMDSMImageRepresentationProxy::OnArray()
-{
-  if (!this->IsChoosing)
-  {
-    vtkSMPropertyHelper(this, ArrayAutomatic).Set(0);
-  }
-  this->ChooseComponent();
 }
 
 bool vtkSMDSMImageRepresentationProxy::ChooseShown()
@@ -224,7 +210,7 @@ bool vtkSMDSMImageRepresentationProxy::ChooseComponent()
 }
 
 /// The data have been updated, and with them the domains; then the view renders. Data that come after their display left
-/// it without an array and without a box to crop to.
+/// it without an array.
 void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);
@@ -237,8 +223,6 @@ void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     this->SetIsovalueAutomatic(); // within the other range, also where nothing is traced yet
   }
-  vtkSMProperty* const box = this->GetProperty(Box);
-  isAny = (IsOfNothing(vtkSMPropertyHelper(box)) && box->ResetToDomainDefaults()) || isAny;
   if (this->Components == 0)
   {
     this->Components = CountComponents(array); // from a state file, whose component stays

@@ -21,16 +21,16 @@
 #define vtkSMDSMImageRepresentationProxy_h
 
 #include "vtkRepresentationsDSMModule.h" // for the export macro
-#include "vtkSMRepresentationProxy.h"
+#include "vtkSMDSMRepresentationProxy.h"
 
 #include <functional> // for arguments
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkSMDSMImageRepresentationProxy
-  : public vtkSMRepresentationProxy
+  : public vtkSMDSMRepresentationProxy
 {
 public:
   static vtkSMDSMImageRepresentationProxy* New();
-  vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMRepresentationProxy);
+  vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMDSMRepresentationProxy);
 
   /**
    * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on that it
@@ -80,7 +80,6 @@ private:
   vtkSMDSMImageRepresentationProxy(const vtkSMDSMImageRepresentationProxy&) = delete;
   void operator=(const vtkSMDSMImageRepresentationProxy&) = delete;
 
-  void OnArray();
   /// Shows isosurfaces of data that had no array for them when their display was made. Returns whether it does.
   bool ChooseShown();
   /// The magnitude, or the only component, where their number is another. Returns whether it is.

@@ -10,6 +10,7 @@
 #include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMVectorProperty.h"
 
 #include <string>
 
@@ -36,10 +37,12 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefaultValues(
     [&]
     {
       isSet = this->SetDefault(property, false);
-      // 00 for 0: ParaView does not tell when a property is set to what it is, but a script may choose this array.
-      vtkSMPropertyHelper chosen(property);
-      const std::string number = "0" + std::to_string(chosen.GetAsInt(Association));
-      chosen.Set(Association, number.c_str());
+      // ParaView does not tell when a property is set to what it is, but a script may choose this array, with its
+      // association or by its name alone. It does tell after a change of the number of elements.
+      auto* const elements = vtkSMVectorProperty::SafeDownCast(property);
+      const unsigned int count = elements->GetNumberOfElements();
+      elements->SetNumberOfElements(count + 1);
+      elements->SetNumberOfElements(count);
     });
   return isSet;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMDSMVolumeRepresentationProxy.h"
 
+#include "vtkPVDSMHints.h"
 #include "vtkPVDSMNoUndo.h"
+#include "vtkSMDSMRepresentationProxy.h"
 
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
@@ -12,8 +14,10 @@
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSmartPointer.h"
 
 #include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkSMDSMVolumeRepresentationProxy);
 
@@ -22,6 +26,35 @@ vtkSMDSMVolumeRepresentationProxy::~vtkSMDSMVolumeRepresentationProxy() = defaul
 
 namespace
 {
+
+const std::string Decorator = "<PropertyWidgetDecorator type='GenericDecorator' ";
+const std::string WhenShown = Decorator + "mode='visibility' property='Representation' ";
+const std::string ForVolume = WhenShown + "value='Volume'/>";
+const std::string BesideVolumes = WhenShown + "value='DSM Volume' inverse='1'/>";
+
+/// ParaView's properties of surfaces, which have no effect on a volume.
+constexpr const char* OfSurfaces[] = { "Opacity", "PointSize", "LineWidth", "RenderLinesAsTubes",
+  "RenderPointsAsSpheres", "Interpolation", "SelectTCoordArray", "SelectNormalArray",
+  "SelectTangentArray", "Texture", "RepeatTextures", "InterpolateTextures", "SeamlessU",
+  "SeamlessV", "UseMipmapTextures", "ShowTexturesOnBackface", "FlipTextures", "TextureTransform",
+  "EdgeColor", "EdgeOpacity", "BackfaceRepresentation", "BackfaceAmbientColor",
+  "BackfaceDiffuseColor", "BackfaceOpacity", "Triangulate", "NonlinearSubdivisionLevel" };
+
+vtkSmartPointer<vtkPVXMLElement> MakeHint(const std::string& text)
+{
+  return vtkPVXMLParser::ParseXML(text.c_str());
+}
+
+/// A hint that holds where one of these does.
+vtkSmartPointer<vtkPVXMLElement> MakeEither(const std::vector<std::string>& hints)
+{
+  std::string text = "<PropertyWidgetDecorator type='CompositeDecorator'><Expression type='or'>";
+  for (const std::string& hint : hints)
+  {
+    text += hint;
+  }
+  return MakeHint(text + "</Expression></PropertyWidgetDecorator>");
+}
 
 /// ParaView's definition lets the panel show the property for Volume alone, by a hint that is the same for all datasets.
 void ShowForVolumes(vtkSMProperty* property)
@@ -33,14 +66,8 @@ void ShowForVolumes(vtkSMProperty* property)
     if (hint->GetAttributeOrEmpty("property") == std::string("Representation") &&
       hint->GetAttributeOrEmpty("value") == std::string("Volume"))
     {
-      const std::string one = "<PropertyWidgetDecorator type='GenericDecorator' mode='visibility' "
-                              "property='Representation' value=";
-      const auto both = vtkPVXMLParser::ParseXML(
-        ("<PropertyWidgetDecorator type='CompositeDecorator'><Expression type='or'>" + one +
-          "'Volume'/>" + one + "'DSM Volume'/></Expression></PropertyWidgetDecorator>")
-          .c_str());
-      hints->RemoveNestedElement(hint);
-      hints->AddNestedElement(both);
+      vtkPVDSMHints::Change(
+        property, MakeEither({ ForVolume, WhenShown + "value='DSM Volume'/>" }), hint);
       return;
     }
   }
@@ -78,6 +105,21 @@ void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
   }
   ShowForVolumes(display->GetProperty("MultiComponentsMapping"));
   OfferBlendModes(display->GetProperty("BlendMode"), this->GetProperty("BlendMode"));
+  for (const char* name : OfSurfaces)
+  {
+    if (vtkSMProperty* const property = display->GetProperty(name))
+    {
+      vtkPVDSMHints::Change(property, MakeHint(BesideVolumes), nullptr);
+    }
+  }
+  if (vtkSMProperty* const direction = display->GetProperty("VolumeAnisotropy"))
+  {
+    const std::string scatters =
+      Decorator + "mode='enabled_state' property='DSMScattering' value='0' inverse='1'/>";
+    const std::string isVolume =
+      Decorator + "mode='enabled_state' property='Representation' value='Volume'/>";
+    vtkPVDSMHints::Change(direction, MakeEither({ scatters, isVolume }), nullptr);
+  }
   for (const char* name : { "ScalarOpacityUnitDistance", "VolumeAnisotropy" })
   {
     if (vtkSMProperty* const property = display->GetProperty(name))
@@ -97,9 +139,11 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     return;
   }
-  if (isOfSlices)
+  // The proxy with the properties that the panel shows was told of the update before this one.
+  vtkSMProxy* const isosurfaces = display->GetProperty("DSMCroppingBox")->GetParent();
+  if (auto* const shown = vtkSMDSMRepresentationProxy::SafeDownCast(isosurfaces))
   {
-    this->ChooseSlices();
+    shown->FollowData();
   }
   if (!this->HasChosen)
   {
@@ -132,19 +176,6 @@ void vtkSMDSMVolumeRepresentationProxy::ReportIgnored(vtkSMPVRepresentationProxy
     vtkWarningMacro(<< text);
   }
   this->Reported = text;
-}
-
-void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()
-{
-  const vtkPVDSMNoUndo noUndo;
-  for (const char* name : { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" })
-  {
-    if (vtkSMPropertyHelper(this, name).GetAsInt() < 0)
-    {
-      this->GetProperty(name)->ResetToDomainDefaults();
-    }
-  }
-  this->UpdateVTKObjects();
 }
 
 /// The first one of points, or else of cells.

@@ -5,8 +5,7 @@
  *
  * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where there is
  * none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so that the user can
- * choose none. Slices begin in the middle of the data, also of those that come after their display. The panel shows what
- * shades a volume and sets its density without the gear button.
+ * choose none. The panel shows what shades a volume and sets its density without the gear button.
  *
  * The name is what ParaView makes of the element DSMVolumeRepresentationProxy.
  */
@@ -40,7 +39,6 @@ private:
   void operator=(const vtkSMDSMVolumeRepresentationProxy&) = delete;
 
   void ChooseArray(vtkSMPVRepresentationProxy* display);
-  void ChooseSlices();
   /// Warns of what the panels offer and a volume does not show, when the user has chosen it.
   void ReportIgnored(vtkSMPVRepresentationProxy* display);
 

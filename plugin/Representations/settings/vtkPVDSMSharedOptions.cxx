@@ -2,6 +2,7 @@
 #include "vtkPVDSMSharedOptions.h"
 
 #include "vtkPVDSMProxyFinder.h"
+#include "vtkPVDSMWrittenProperties.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
@@ -22,10 +23,10 @@
 #include <map>
 #include <memory>
 
-/// The options of each view and session, for as long as it lives.
+/// The options of each view and session, by their part, for as long as it lives.
 struct vtkPVDSMSharedOptions::Registry
 {
-  std::map<vtkObject*, std::unique_ptr<vtkPVDSMSharedOptions>> Owners;
+  std::map<vtkObject*, std::map<Part, std::unique_ptr<vtkPVDSMSharedOptions>>> Owners;
 
   /// When a process ends by exit, as a script may, its sessions go after what is static here.
   static bool& IsOver()
@@ -50,21 +51,9 @@ struct vtkPVDSMSharedOptions::Registry
     }
   }
 
-  static vtkPVDSMSharedOptions* Find(vtkObject* owner)
-  {
-    const auto found = Get().Owners.find(owner);
-    return found == Get().Owners.end() ? nullptr : found->second.get();
-  }
-
-  static vtkPVDSMSharedOptions* Make(vtkObject* owner, vtkSMProxy* values, vtkSMProxy* like)
-  {
-    vtkNew<vtkCallbackCommand> forget;
-    forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Forget(gone); });
-    owner->AddObserver(vtkCommand::DeleteEvent, forget);
-    auto& made = Get().Owners[owner];
-    made.reset(new vtkPVDSMSharedOptions(values, like));
-    return made.get();
-  }
+  /// Of `values`, or of a copy of `like` without.
+  static vtkPVDSMSharedOptions* Get(
+    vtkObject* owner, Part part, vtkSMProxy* like, vtkSMProxy* values = nullptr);
 };
 
 namespace
@@ -74,6 +63,8 @@ vtkSMProxy* FindPage(vtkSMProxy* proxy)
 {
   return proxy->GetSessionProxyManager()->GetProxy("settings", "DSMRayTracerSettings");
 }
+
+constexpr const char* LookName = "DSMLook";
 
 /// A proxy that begins with the other's values, and never has an object.
 vtkSmartPointer<vtkSMProxy> CreateValues(vtkSMProxy* like)
@@ -86,12 +77,13 @@ vtkSmartPointer<vtkSMProxy> CreateValues(vtkSMProxy* like)
   return values;
 }
 
-/// Returns whether the proxy has a value of its own: neither its default nor the settings page's.
+/// Returns whether a display, or the settings page, has a value of its own: not its default, and of a display not the
+/// page's.
 bool IsGiven(vtkSMProxy* proxy, const char* name)
 {
   vtkSMProxy* page = FindPage(proxy);
   return !proxy->GetProperty(name)->IsValueDefault() &&
-    !(page && page->GetProperty(name) &&
+    !(page && page != proxy && page->GetProperty(name) &&
       vtkSMPropertyHelper(page, name).GetAsVariant(0).ToString() ==
         vtkSMPropertyHelper(proxy, name).GetAsVariant(0).ToString());
 }
@@ -100,19 +92,38 @@ bool IsGiven(vtkSMProxy* proxy, const char* name)
 /// Python state and no trace, which would bring back another picture.
 void KeepLook(vtkSMProxy* light)
 {
-  constexpr const char* name = "DSMLook";
   auto* page = vtkSMSettingsProxy::SafeDownCast(FindPage(light));
-  if (page && page->GetSourcePropertyName(light, name))
+  if (page && page->GetSourcePropertyName(light, LookName))
   {
-    page->RemoveLink(name, light, name);
+    page->RemoveLink(LookName, light, LookName);
     SM_SCOPED_TRACE(PropertiesModified).arg("proxy", light->GetTrueParentProxy());
-    light->GetProperty(name)->Modified();
+    light->GetProperty(LookName)->Modified();
   }
 }
 
 } // namespace
 
-void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory)
+vtkPVDSMSharedOptions* vtkPVDSMSharedOptions::Registry::Get(
+  vtkObject* owner, Part part, vtkSMProxy* like, vtkSMProxy* values)
+{
+  auto& owners = Registry::Get().Owners;
+  if (owners.count(owner) == 0)
+  {
+    vtkNew<vtkCallbackCommand> forget;
+    forget->SetCallback([](vtkObject* gone, unsigned long, void*, void*) { Forget(gone); });
+    owner->AddObserver(vtkCommand::DeleteEvent, forget);
+  }
+  auto& options = owners[owner][part];
+  if (!options)
+  {
+    const auto kept = values ? vtkSmartPointer<vtkSMProxy>(values) : CreateValues(like);
+    options.reset(new vtkPVDSMSharedOptions(kept, like, part));
+  }
+  return options.get();
+}
+
+void vtkPVDSMSharedOptions::Join(
+  vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory, bool isTraced)
 {
   vtkSMProxy* lightProxy = vtkPVDSMProxyFinder::Find(light);
   vtkSMProxy* memoryProxy = lightProxy ? vtkPVDSMProxyFinder::Find(memory) : nullptr;
@@ -120,39 +131,40 @@ void vtkPVDSMSharedOptions::Join(vtkPVRenderView* view, vtkObjectBase* light, vt
   {
     return;
   }
-  vtkPVDSMSharedOptions* shared = Registry::Find(view);
-  if (!shared)
+  vtkPVDSMWrittenProperties::Choose(lightProxy->GetTrueParentProxy());
+  const Word word = !lightProxy->GetSessionProxyManager()->GetInLoadXMLState() ? Word::Given
+    : isTraced                                                                 ? Word::All
+                                                                               : Word::None;
+  Registry::Get(view, Part::AllButLook, lightProxy)->Add(lightProxy, word);
+  if (isTraced)
   {
-    shared = Registry::Make(view, CreateValues(lightProxy), lightProxy);
+    Registry::Get(view, Part::Look, lightProxy)->Add(lightProxy, word);
+    KeepLook(lightProxy);
   }
-  shared->Add(lightProxy, lightProxy->GetSessionProxyManager()->GetInLoadXMLState());
-  KeepLook(lightProxy);
 
-  vtkSMSession* session = memoryProxy->GetSession();
-  shared = Registry::Find(session);
   vtkSMProxy* page = FindPage(memoryProxy);
-  if (!shared)
-  {
-    shared = Registry::Make(
-      session, page ? vtkSmartPointer<vtkSMProxy>(page) : CreateValues(memoryProxy), memoryProxy);
-  }
+  vtkPVDSMSharedOptions* const ofRanks =
+    Registry::Get(memoryProxy->GetSession(), Part::All, memoryProxy, page);
   if (page)
   {
-    shared->Add(page, false);
+    ofRanks->Add(page, Word::Given);
   }
-  shared->Add(memoryProxy, false);
+  ofRanks->Add(memoryProxy, Word::Given);
 }
 
 void vtkPVDSMSharedOptions::Leave(
   vtkPVRenderView* view, vtkObjectBase* light, vtkObjectBase* memory)
 {
-  for (const auto& entry : Registry::Get().Owners)
+  for (const auto& owner : Registry::Get().Owners)
   {
-    entry.second->Remove(entry.first == view ? light : memory);
+    for (const auto& part : owner.second)
+    {
+      part.second->Remove(owner.first == view ? light : memory);
+    }
   }
 }
 
-vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like)
+vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* like, Part part)
   : Proxies{ values }
 {
   vtkSmartPointer<vtkSMPropertyIterator> property;
@@ -160,7 +172,9 @@ vtkPVDSMSharedOptions::vtkPVDSMSharedOptions(vtkSMProxy* values, vtkSMProxy* lik
   for (property->Begin(); !property->IsAtEnd(); property->Next())
   {
     vtkPVXMLElement* hints = property->GetProperty()->GetHints();
-    if (!hints || !hints->FindNestedElementByName("DSMOfDataset"))
+    const bool isShared = !hints || !hints->FindNestedElementByName("DSMOfDataset");
+    const bool isLook = std::string(property->GetKey()) == LookName;
+    if (isShared && (part == Part::All || isLook == (part == Part::Look)))
     {
       this->Names.emplace_back(property->GetKey());
     }
@@ -185,9 +199,11 @@ vtkPVDSMSharedOptions::~vtkPVDSMSharedOptions()
   }
 }
 
-void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, bool speaks)
+void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, Word word)
 {
-  if (std::find(this->Proxies.begin(), this->Proxies.end(), proxy) != this->Proxies.end())
+  const bool isNew =
+    std::find(this->Proxies.begin(), this->Proxies.end(), proxy) == this->Proxies.end();
+  if (!isNew && word != Word::All)
   {
     return;
   }
@@ -196,7 +212,7 @@ void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, bool speaks)
   for (const std::string& name : this->Names)
   {
     vtkSMProperty* theirs = proxy->GetProperty(name.c_str());
-    if (speaks || IsGiven(proxy, name.c_str()))
+    if (word == Word::All || (word == Word::Given && IsGiven(proxy, name.c_str())))
     {
       this->Spread(proxy, name);
     }
@@ -205,8 +221,11 @@ void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, bool speaks)
       theirs->Copy(values->GetProperty(name.c_str()));
     }
   }
-  this->Proxies.emplace_back(proxy);
-  proxy->AddObserver(vtkCommand::PropertyModifiedEvent, this->Observer);
+  if (isNew)
+  {
+    this->Proxies.emplace_back(proxy);
+    proxy->AddObserver(vtkCommand::PropertyModifiedEvent, this->Observer);
+  }
   this->UpdateObjects();
   this->IsSpreading = false;
 }
