@@ -158,20 +158,28 @@ for name, compressor in (("turned.zarr", "default"), ("turned_raw.zarr", None)):
     note(name, [(name[: -len(".zarr")], "float32")], spacing=[1.0, 2.0, 4.0])
 
 # OME-Zarr 0.6: coordinate systems, transformations in one another, units that differ.
-def write_ome6(name, transformation, data, systems, **more):
+def write_ome6(name, transformation, data, systems, coarser=None, **more):
+    """coarser: the transformation of another level; then that one is noted."""
     group = zarr.open_group(path(name), mode="w", **LATER)
     save_zarr(name + "/s0", data, chunks=(1,) * (data.ndim - 3) + (4, 5, 8))
-    io = {"input": {"path": "s0"}, "output": {"name": "intrinsic"}}
+    datasets = [(transformation, "s0")]
+    if coarser:
+        save_zarr(name + "/s1", data[::2, ::2, ::2], chunks=(4, 5, 8))
+        datasets.append((coarser, "s1"))
+        more = {"levels": 2, "level": 1, "size": (11, 7, 5), "stride": 2, **more}
     group.attrs["ome"] = {
         "version": "0.6",
         "multiscales": [
             {
                 "coordinateSystems": [{"name": "other", "axes": []}, {"name": "intrinsic", "axes": systems}],
-                "datasets": [{"path": "s0", "coordinateTransformations": [{**transformation, **io}]}],
+                "datasets": [
+                    {"path": level, "coordinateTransformations": [{**how, "input": {"path": level}, "output": {"name": "intrinsic"}}]}
+                    for how, level in datasets
+                ],
             }
         ],
     }
-    note(name, [("values", "float32")], **more)
+    note(name, [(None, "float32")], **more)
 
 
 def scale(numbers):
@@ -206,11 +214,17 @@ write_ome6(
     direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
 )
 
+TURNED = {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}
+write_ome6(
+    "six_turned_levels.zarr", TURNED, values("<f4"), SPACE, {"type": "sequence", "transformations": [scale([2, 2, 2]), TURNED]},
+    spacing=[2.0] * 3, origin=[-0.1, 0.7, 0.5], direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
+)
+
 # OME-Zarr 0.1, which tells names of arrays alone.
 group = zarr.open_group(path("ome1.zarr"), mode="w", **LATER)
 save_zarr("ome1.zarr/0", values("<f4"), chunks=(4, 5, 8))
 save_zarr("ome1.zarr/1", values("<f4")[::2, ::2, ::2], chunks=(4, 5, 8))
 group.attrs["multiscales"] = [{"version": "0.1", "datasets": [{"path": "0"}, {"path": "1"}]}]
 note(
-    "ome1.zarr", [("values", "float32")], levels=2, level=1, size=(11, 7, 5), stride=2, spacing=[2.0] * 3, origin=[0.5] * 3,
+    "ome1.zarr", [(None, "float32")], levels=2, level=1, size=(11, 7, 5), stride=2, spacing=[2.0] * 3, origin=[0.5] * 3,
 )

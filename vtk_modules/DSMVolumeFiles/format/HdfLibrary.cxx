@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
 #include "DSMCore/base/ReaderThreads.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <algorithm>
 #include <atomic>
@@ -101,14 +102,7 @@ std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll)
 
 std::string ListHdfNames(const std::vector<std::string>& names)
 {
-  constexpr std::size_t most = 10;
-  std::string list = names.empty() ? "none" : "";
-  for (std::size_t index = 0; index < std::min(most, names.size()); ++index)
-  {
-    list += (index > 0 ? ", '" : "'") + names[index] + "'";
-  }
-  return list +
-    (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");
+  return ListNames(names);
 }
 
 hid_t GetHdfType(bricks::ScalarType type)
@@ -248,8 +242,11 @@ std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t ax
   const HdfHandle references(H5Tvlen_create(H5T_STD_REF_OBJ), &H5Tclose);
   std::vector<hvl_t> lists(axes);
   if (H5Sget_simple_extent_npoints(space.Get()) != static_cast<hssize_t>(axes) ||
-    H5Tequal(type.Get(), references.Get()) <= 0 ||
-    H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
+    H5Tequal(type.Get(), references.Get()) <= 0)
+  {
+    return paths;
+  }
+  if (H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
   {
     return paths;
   }
