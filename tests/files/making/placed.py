@@ -106,6 +106,31 @@ with h5py.File(path("emd.h5"), "w") as file:
         group[f"dim{axis + 1}"] = 2.0 + (axis + 1) * np.arange(count)
         group[f"dim{axis + 1}"].attrs["name"], group[f"dim{axis + 1}"].attrs["units"] = name, "[n_m]"
 note("emd.h5", [("experiment/tomogram/data", "uint16")], spacing=[1.0, 2.0, 3.0], origin=[2.0] * 3)
+# Imaris: extents from edge to edge, datasets that are padded to whole chunks, a coarser level.
+with h5py.File(path("image.ims"), "w") as file:
+    def tell(group, **told):
+        for name, text in told.items():
+            group.attrs[name] = np.frombuffer(str(text).encode(), "S1")
+
+    tell(file.create_group("DataSetInfo/Image"), X=21, Y=13, Z=10, Unit="um", ExtMin0=10, ExtMin1=20, ExtMin2=30, ExtMax0=31, ExtMax1=46, ExtMax2=70)
+    for step in range(2):
+        for channel, how in enumerate(({"compression": "gzip"}, {})):
+            padded = np.full((12, 15, 24), 999, "<u2")
+            padded[:10, :13, :21] = values("<u2", channel=channel, step=step)
+            group = file.create_group(f"DataSet/ResolutionLevel 0/TimePoint {step}/Channel {channel}")
+            group.create_dataset("Data", data=padded, chunks=(4, 5, 8), **how)
+            group = file.create_group(f"DataSet/ResolutionLevel 1/TimePoint {step}/Channel {channel}")
+            group.create_dataset("Data", data=padded[::2, ::2, ::2], chunks=(4, 5, 8))
+            tell(group, ImageSizeX=11, ImageSizeY=7, ImageSizeZ=5)
+note(
+    "image.ims", [("Channel 0", "uint16"), ("Channel 1", "uint16", 1, 1)], steps=2, spacing=[1.0, 2.0, 4.0],
+    origin=[10.5, 21.0, 32.0],
+)
+CHOSEN = "DataSet/ResolutionLevel 1/TimePoint 0/Channel 0/Data"
+note(
+    "image.ims", [(CHOSEN, "uint16")], dataset=CHOSEN, size=(11, 7, 5), stride=2, spacing=[21 / 11, 26 / 7, 8.0],
+    origin=[10 + 21 / 22, 20 + 13 / 7, 34.0],
+)
 with h5py.File(path("voxel_size.h5"), "w") as file:
     file.create_dataset("f", data=values("<f4")).attrs["element_size_um"] = [4.0, 1.0, 0.5]
 note("voxel_size.h5", [("f", "float32")], spacing=[0.5, 1.0, 4.0])

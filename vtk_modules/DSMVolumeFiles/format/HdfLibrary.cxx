@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/ReaderThreads.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/format/HdfHeap.h"
 
 #include <algorithm>
 #include <atomic>
@@ -207,6 +208,7 @@ std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
   const auto all = static_cast<std::size_t>(count);
   if (H5Tis_variable_str(type.Get()) > 0)
   {
+    CheckHdfHeap(attribute.Get(), all);
     std::vector<char*> read(all, nullptr);
     const bool isRead = H5Aread(attribute.Get(), type.Get(), read.data()) >= 0;
     for (char* const text : read)
@@ -246,6 +248,7 @@ std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t ax
   {
     return paths;
   }
+  CheckHdfHeap(attribute.Get(), axes);
   if (H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
   {
     return paths;

@@ -4,6 +4,7 @@
 #include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
+#include "DSMVolumeFiles/format/ImarisVolumes.h"
 #include "DSMVolumeFiles/format/OpenPmdSteps.h"
 
 #include <algorithm>
@@ -113,6 +114,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
   {
     JoinOpenPmdSteps(file, volumes);
   }
+  PlaceImaris(file, volumes, wanted.empty());
   std::sort(found.begin(), found.end(),
     [](const HdfVolume& a, const HdfVolume& b) { return a.Name < b.Name; });
   return volumes;
