@@ -55,6 +55,12 @@ def picture(source, array, **properties):
     return pixels, display
 
 
+# A state of an earlier version asks for an array without a name by the name that it had then.
+old = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.mha"), PointArrayStatus=["values"])
+old.UpdatePipeline()
+check([array.GetName() for array in old.PointData] == ["values"], "the name that a state asks for")
+simple.Delete(old)
+
 pictures = []
 BALLS = (
     ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "ball"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"),

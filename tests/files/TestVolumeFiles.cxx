@@ -258,7 +258,6 @@ TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
   {
     ExpectRefusal(name, options, "choosing a dataset ('f')");
   }
-  ExpectRefusal("plate.zarr", {}, "Enter one as Dataset: 'A/1/0', 'A/1/1'.");
   ExpectRefusal("plate.zarr", options, "no dataset 'f'. Valid datasets: 'A/1/0', 'A/1/1'.");
   ExpectRefusal("several.zarr", options, "Valid datasets: 'near', 'multiscales/1', ");
   EXPECT_EQ(

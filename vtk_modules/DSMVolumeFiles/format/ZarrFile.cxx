@@ -345,7 +345,7 @@ private:
     }
   }
 
-  /// The folder is an array, a group of arrays, or has one thing in it that can be opened.
+  /// The folder is an array, or a group of arrays; else the first of such or of images in it is opened.
   void OpenArrays(int level)
   {
     const auto addAs = [this](const std::string& folder, const std::string& name)
@@ -375,23 +375,23 @@ private:
     std::string refused;
     const std::vector<std::string> names = ZarrGroup::FindArrays(this->Folder, refused);
     const std::vector<std::string> inner = ZarrGroup::FindInner(this->Folder);
-    if (names.empty() && inner.size() == 1)
+    if (names.empty() && inner.empty())
     {
-      this->OpenInner(inner.front(), {}, level);
-      return;
+      throw FileError(this->Folder,
+        "has no Zarr array with three axes." + (refused.empty() ? std::string() : " " + refused));
+    }
+    if (inner.size() > (names.empty() ? 1 : 0))
+    {
+      const std::string shown = names.empty()
+        ? "several images or groups of arrays, of which " + Quote(inner.front()) + " is shown"
+        : "images or groups of arrays beside those that are shown";
+      this->Warnings.push_back(
+        "has " + shown + ". Enter another one as Dataset: " + ListNames(inner));
     }
     if (names.empty())
     {
-      throw FileError(this->Folder,
-        inner.empty()
-          ? "has no Zarr array with three axes." + (refused.empty() ? std::string() : " " + refused)
-          : "has several images or groups of arrays. Enter one as Dataset: " + ListNames(inner));
-    }
-    if (!inner.empty())
-    {
-      this->Warnings.push_back(
-        "has other images or groups of arrays in it. Enter one as Dataset to show it: " +
-        ListNames(inner));
+      this->OpenInner(inner.front(), {}, level);
+      return;
     }
     for (const std::string& name : names)
     {
