@@ -56,7 +56,7 @@ def picture(source, array, **properties):
 
 
 # A state of an earlier version asks for an array without a name by the name that it had then.
-old = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.mha"), PointArrayStatus=["values"])
+old = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.mha"), PointArrays=["values"])
 old.UpdatePipeline()
 check([array.GetName() for array in old.PointData] == ["values"], "the name that a state asks for")
 simple.Delete(old)
