@@ -96,8 +96,8 @@ Options Parse(CLI::App& app, int argc, char** argv)
     app.add_option("--step", convert.Step, "time step to read (default: 0)")->check(atLeastZero);
   app.add_option("--level", options.Open.Level, "level of detail to read (default: 0, the finest)")
     ->check(atLeastZero);
-  app.add_option(
-    "--dataset", options.Open.Dataset, "dataset to read in an HDF5 file that is not VTKHDF");
+  app.add_option("--dataset", options.Open.Dataset,
+    "dataset to read in an HDF5 file that is not VTKHDF, or image or group in a Zarr folder");
   app
     .add_option("--levels", convert.Levels,
       "number of coarser levels to write, each with half the samples along each axis, for display "

@@ -119,6 +119,51 @@ TEST(ChunkCache, WhatIsBeingReadCountsToo)
   }
 }
 
+/// Chunks of one sample each, of which none is stored.
+class SparseFile final : public vol::VolumeFile
+{
+public:
+  SparseFile()
+    : VolumeFile("sparse")
+  {
+    vol::FileArray array;
+    array.Grid = { bricks::Index3(1000, 10, 10), bricks::Index3(1) };
+    this->Arrays.push_back(array);
+  }
+  void ReadChunk(std::size_t, int, const bricks::Index3&, std::byte* out) const override
+  {
+    ++this->Reads;
+    *out = std::byte(7);
+  }
+  bool IsFill(std::size_t, int, const bricks::Box& box) const override { return box.Min.x > 0; }
+
+  mutable int Reads = 0;
+};
+
+TEST(ChunkCache, SmallChunksTakeNoMoreThanTheLimit)
+{
+  const auto file = std::make_shared<SparseFile>();
+  vol::ChunkCache cache(100000); // far more than the samples have
+  for (int x = 0; x < 1000; ++x)
+  {
+    cache.Get(file, 0, 0, { x, 0, 0 });
+  }
+  EXPECT_EQ(file->Reads, 1000);
+  cache.Get(file, 0, 0, { 0, 0, 0 });
+  EXPECT_EQ(file->Reads, 1001) << "what a chunk takes beside its samples counts, too";
+  EXPECT_LE(cache.GetBytes(), cache.GetLimit());
+}
+
+TEST(ChunkCache, WhatIsNotStoredIsReadOnceForABox)
+{
+  const auto file = std::make_shared<SparseFile>();
+  vol::ChunkCache cache(1 << 20);
+  std::vector<std::byte> box(999 * 100);
+  cache.ReadBox(file, 0, 0, { { 1, 0, 0 }, { 1000, 10, 10 } }, box.data());
+  EXPECT_EQ(std::count(box.begin(), box.end(), std::byte(7)), 999 * 100);
+  EXPECT_EQ(file->Reads, 1);
+}
+
 TEST(ChunkCache, HoldsWhatIsNeededTogetherWhereItMay)
 {
   vol::ChunkCache cache(3000);

@@ -18,7 +18,8 @@ MEMORY = 2  # MiB of each rank, of which an eighth is for chunks
 load_plugin()
 view = create_view()
 view.UseFXAA = 0
-path = os.path.join(FOLDER, f"waves{get_ranks()}.raw")
+ARRAY = f"waves{get_ranks()}"
+path = os.path.join(FOLDER, ARRAY + ".raw")
 z, y, x = numpy.mgrid[0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j]
 values = (numpy.sin(9 * x) * numpy.cos(7 * y) + numpy.sin(8 * z + 3 * x)).astype(numpy.float32)
 values.tofile(path)
@@ -60,13 +61,13 @@ def go_round(display, isovalues=(0.3, 1.2)):
 source = open_file()
 plain = simple.ProgrammableFilter(Input=source)
 plain.Script, plain.RequestInformationScript, plain.CopyArrays = COPY, EXTENT, 0
-in_memory = show(plain, view, [0.3], "values", DSMMemory=256)
+in_memory = show(plain, view, [0.3], ARRAY, DSMMemory=256)
 expected = go_round(in_memory)
 check(all(get_covered(picture).mean() > 0.05 for picture in expected), "something is shown")
 simple.Delete(plain)
 render(view)
 
-display = show(source, view, [0.3], "values")
+display = show(source, view, [0.3], ARRAY)
 render(view)
 with Messages() as messages:
     display.DSMMemory = MEMORY
@@ -156,7 +157,7 @@ name = os.path.basename(path)
 with open(path, "rb") as file:
     written = file.read()
 source = simple.DSMVolumeReader(FileName=path)
-display = show(source, view, [0.3], "values", DSMMemory=MEMORY)
+display = show(source, view, [0.3], ARRAY, DSMMemory=MEMORY)
 expected = go_round(display)
 last = expected[-1]
 state = os.stat(path)

@@ -68,7 +68,7 @@ public:
   template <class T>
   void AddAttribute(const char* object, const char* name, hid_t type, const std::vector<T>& values)
   {
-    const HdfHandle group(H5Gopen2(this->File.Get(), object, H5P_DEFAULT), &H5Gclose);
+    const HdfHandle group(H5Oopen(this->File.Get(), object, H5P_DEFAULT), &H5Oclose);
     const hsize_t count = values.size();
     const HdfHandle space(H5Screate_simple(1, &count, nullptr), &H5Sclose);
     const HdfHandle attribute(
@@ -240,6 +240,56 @@ TEST(HostileHdf, DamagedObjectsAreTold)
     const auto opened = vol::OpenVolumeFile(path.string());
     ASSERT_EQ(opened->GetWarnings().size(), 1u);
     EXPECT_NE(opened->GetWarnings().front().find("damaged"), std::string::npos);
+  }
+}
+
+/// Sizes in the heap of texts and references, which the library follows wherever they lead.
+TEST(HostileHdf, DamagedHeapsAreRefused)
+{
+  const fs::path path = MakeFolder("heap") / "heap.h5";
+  const std::uint64_t sizes[] = { std::uint64_t(1) << 44, ~std::uint64_t(15), 24 };
+  for (const bool areTexts : { true, false })
+  {
+    const auto write = [&]
+    {
+      Writer file(path);
+      file.Add("a", { 4, 4, 4 }, {});
+      if (areTexts)
+      {
+        const HdfHandle text(H5Tcopy(H5T_C_S1), &H5Tclose);
+        H5Tset_size(text.Get(), H5T_VARIABLE);
+        const std::vector<const char*> names{ "zzzzzzz", "y", "x" };
+        file.AddAttribute("a", "DIMENSION_LABELS", text.Get(), names);
+        return;
+      }
+      const HdfHandle list(H5Tvlen_create(H5T_STD_REF_OBJ), &H5Tclose);
+      hobj_ref_t scale = 0;
+      Writer::WriteAll(
+        file.Add("s", { 4 }, {}), H5T_NATIVE_UINT8, std::vector<std::uint8_t>{ 0, 1, 2, 3 });
+      H5Rcreate(&scale, file.Get(), "s", H5R_OBJECT, -1);
+      const std::vector<hvl_t> lists(3, hvl_t{ 1, &scale });
+      file.AddAttribute("a", "DIMENSION_LIST", list.Get(), lists);
+    };
+    write();
+    EXPECT_EQ(ReadWatched(path), "");
+    const std::string whole = Writer::ReadBytes(path);
+    const std::size_t heap = whole.find("GCOL");
+    ASSERT_NE(heap, std::string::npos);
+    // The size of the heap, of each object, and of what is free behind them; an index.
+    for (const std::size_t place : { 8, 24, 48, 72, 96 })
+    {
+      for (const std::uint64_t size : sizes)
+      {
+        std::string bytes = whole;
+        bytes.replace(heap + place, 8, Bytes(LongWords{ size }));
+        WriteText(path, bytes);
+        ExpectRefusal(path, { "'DIMENSION_L", "of '/a'", "global heap" });
+      }
+    }
+    std::string bytes = whole;
+    bytes[heap + 16] = '\7';
+    WriteText(path, bytes);
+    ExpectRefusal(path, { "global heap" });
   }
 }
 

@@ -98,6 +98,17 @@ TEST(HostileHeaders, AFieldWithManyWordsIsRefused)
   ExpectRefusal(WriteNrrd("name", "type: " + name), { "type" });
 }
 
+TEST(HostileHeaders, WhatCannotBeToldApartIsRefused)
+{
+  for (const char* sizes : { "12 4 4 10", "8 4 4 3" })
+  {
+    ExpectRefusal(WriteNrrd("four", "", sizes), { sizes, "kinds: domain domain domain vector" });
+  }
+  const fs::path path = MakeFolder("classic") / "old.nc";
+  WriteText(path, "CDF\x01" + std::string(200, '\0'));
+  ExpectRefusal(path, { "netCDF-3", "nccopy -k nc4" });
+}
+
 TEST(HostileHeaders, NumbersOutOfRangeAreRefused)
 {
   for (const char* number : { "1e300", "nan", "4.7", "1e19", "-1e300", "inf", "0x4", "4," })
@@ -112,8 +123,9 @@ TEST(HostileHeaders, NumbersOutOfRangeAreRefused)
   ExpectRefusal(WriteMeta("numbers", "", "4 4 0"), { "4 x 4 x 0 samples" });
   ExpectRefusal(WriteNrrd("numbers", "", "2147483647 2147483647 2147483647"), { "samples" });
   ExpectRefusal(WriteNrrd("numbers", "", "4294967296 1 1"), { "samples" });
-  ExpectRefusal(WriteNrrd("numbers", "", "2147483647 4 4 4"), { "2147483647 components" });
-  ExpectRefusal(WriteNrrd("numbers", "", "4294967297 4 4 4"), { "components" });
+  const std::string kinds = "kinds: vector domain domain domain";
+  ExpectRefusal(WriteNrrd("numbers", kinds, "2147483647 4 4 4"), { "2147483647 components" });
+  ExpectRefusal(WriteNrrd("numbers", kinds, "4294967297 4 4 4"), { "components" });
   for (const char* skip : { "-2", "1e300", "9007199254740992", "4.5", "-9e18" })
   {
     ExpectRefusal(WriteNrrd("skip", "byte skip: " + std::string(skip)), {});

@@ -16,7 +16,8 @@ PLACES = ((0.6, 0.5, 1.0), (-1.0, 0.2, 0.3), (0.2, -0.9, -0.6))
 
 load_plugin()
 rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
-path = os.path.join(FOLDER, f"waves{get_ranks()}")
+ARRAY = f"waves{get_ranks()}"
+path = os.path.join(FOLDER, ARRAY)
 # A surface that is nearly everywhere.
 z, y, x = numpy.ogrid[0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j, 0 : 1 : EDGE * 1j]
 values = numpy.sin(21 * x) * numpy.cos(19 * y) + numpy.sin(20 * z + 3 * x)
@@ -48,7 +49,7 @@ def move(place):
     return get_coarser()
 
 
-display = show(source, view, [0.8], "values", DSMMemory=MEMORY, DSMThreads=1)
+display = show(source, view, [0.8], ARRAY, DSMMemory=MEMORY, DSMThreads=1)
 expected = [None] * len(PLACES)
 for number, place in enumerate(PLACES):
     place_camera(view, place)
@@ -96,7 +97,7 @@ check(all(row["BytesOfTables"] + row["CacheCapacity"] <= row["MemoryBudget"] for
 
 # Colored by itself, clipped, twice in the view: the same holds.
 display.DSMMemory = MEMORY
-simple.ColorBy(display, ("POINTS", "values"))
+simple.ColorBy(display, ("POINTS", ARRAY))
 display.DSMIsoValues = [0.8, -0.4]
 display.DSMClip = 1
 for number, place in enumerate(PLACES):
@@ -115,7 +116,7 @@ for number, place in enumerate(PLACES):
 simple.Delete(source)
 source = simple.DSMVolumeReader(FileName=path + ".vtkhdf")
 display = simple.Show(source, view)
-simple.ColorBy(display, ("POINTS", "values"))
+simple.ColorBy(display, ("POINTS", ARRAY))
 display.DSMMemory, display.DSMThreads = 64, 1
 display.DSMSliceX = display.DSMSliceY = 0
 display.DSMSliceZIndex = 75
@@ -142,7 +143,7 @@ view.CameraParallelProjection = 0
 # A coarser level that was opened has its own below it; where there is none, the option does nothing.
 simple.Delete(source)
 source = simple.DSMVolumeReader(FileName=path + ".vtkhdf", LevelofDetail=4)
-display = show(source, view, [0.8], "values", DSMMemory=MEMORY, DSMCoarserDataWhileMoving=1)
+display = show(source, view, [0.8], ARRAY, DSMMemory=MEMORY, DSMCoarserDataWhileMoving=1)
 check([move(place) for place in PLACES] == [0] * len(PLACES), "the coarsest has nothing below it")
 simple.Delete(source)
 os.remove(path + ".vtkhdf")

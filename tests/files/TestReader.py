@@ -55,9 +55,15 @@ def picture(source, array, **properties):
     return pixels, display
 
 
+# A state of an earlier version asks for an array without a name by the name that it had then.
+old = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ball.mha"), PointArrays=["values"])
+old.UpdatePipeline()
+check([array.GetName() for array in old.PointData] == ["values"], "the name that a state asks for")
+simple.Delete(old)
+
 pictures = []
 BALLS = (
-    ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "values"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"),
+    ("ball.h5", "f"), ("ball.zarr", "ball"), ("ball.mha", "ball"), ("ball.vtkhdf", "f"), ("ball_zstd.vtkhdf", "f"),
     ("ball_deflate.vtkhdf", "f"))
 for name, array in BALLS:
     source = simple.DSMVolumeReader(FileName=os.path.join(FILES, name))
@@ -309,7 +315,7 @@ check(bare.GetProperty("RawFile").GetElement(0) == 1, "the panel shows what desc
 bare.RawDimensions, bare.RawScalarType, bare.RawBigEndian = [21, 13, 10], "int", 1
 bare.RawHeaderBytes = 21
 bare.UpdatePipeline()
-check(bare.PointData["values"].GetRange(0) == (0, 100), "bare values, once they are described")
+check(bare.PointData["bare"].GetRange(0) == (0, 100), "bare values, once they are described")
 bare.RawDimensions, bare.RawScalarType = [21, 13, 40], "unsigned char"
 bare.UpdatePipeline()
 with Messages() as messages:
@@ -322,7 +328,7 @@ with Messages() as messages:
     bare.UpdatePipeline()
 check("ERR" not in messages.text, f"once they are right again, there is none: {messages.text}")
 check(bare.GetDataInformation().GetExtent() == (0, 20, 0, 12, 0, 9), "and all is as large as it should be")
-check(bare.PointData["values"].GetRange(0) == (0, 100), "with the values that are there")
+check(bare.PointData["bare"].GetRange(0) == (0, 100), "with the values that are there")
 with Messages() as messages:
     bare.RawDimensions = [21, 13, 9]
     bare.UpdatePipeline()

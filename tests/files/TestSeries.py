@@ -29,7 +29,7 @@ def play(source, **properties):
     source.UpdatePipelineInformation()
     check(list(source.TimestepValues) == [0.0, 1.0, 2.0, 3.0], "four steps")
     scene.UpdateAnimationUsingDataTimeSteps()
-    show(source, view, [0.7], "values", **properties)
+    show(source, view, [0.7], "play", **properties)
     place_camera(view)
     pictures = []
     for time in TIMES:
@@ -60,7 +60,7 @@ for source in (simple.DSMVolumeReader(FileName=get_series("nhdr")), simple.XMLIm
     of_source = simple.TemporalStatistics(Input=simple.Wavelet())
     of_source.Input = source
     of_source.UpdatePipeline()
-    names = [f"values_{of}" for of in ("average", "minimum", "maximum", "stddev")]
+    names = [f"play_{of}" for of in ("average", "minimum", "maximum", "stddev")]
     statistics.append([of_source.PointData[name].GetRange(0) for name in names])
     simple.Delete(of_source)
     if source.SMProxy.GetXMLName() == "DSMVolumeReader":
@@ -76,12 +76,12 @@ os.makedirs(folder, exist_ok=True)
 calm = get_series("h5", "calm", folder)
 for source, target in zip(get_series("vti", "calm"), calm):
     reader = simple.XMLImageDataReader(FileName=[source])
-    simple.SaveData(target, proxy=reader, PointDataArrays=["values"])
+    simple.SaveData(target, proxy=reader, PointDataArrays=["calm"])
     simple.Delete(reader)
 
 
 def play_calm(source, times, **properties):
-    display = show(source, view, [0.7], "values", **properties)
+    display = show(source, view, [0.7], "calm", **properties)
     place_camera(view)
     pictures, fetched, allowed = [], [], []
     for time in times:
@@ -123,7 +123,7 @@ view.UseFXAA = other_view.UseFXAA = 0  # a new view has others forget theirs
 
 def play_tinted(source, **properties):
     pictures = []
-    displays = [show(source, each, [value], "values", **properties) for each, value in ((view, 0.7), (other_view, 0.65))]
+    displays = [show(source, each, [value], "tinted", **properties) for each, value in ((view, 0.7), (other_view, 0.65))]
     displays[0].ColorArrayName = ["POINTS", "tint"]
     displays[0].LookupTable = colors
     place_camera(view)
@@ -153,7 +153,7 @@ for number, file in enumerate(many):
     shutil.copyfile(calm[number % 4], file)
 source = simple.DSMVolumeReader(FileName=many)
 scene.UpdateAnimationUsingDataTimeSteps()
-display = show(source, view, [0.7], "values")
+display = show(source, view, [0.7], "calm")
 place_camera(view)
 
 
@@ -191,7 +191,7 @@ for number, path in enumerate(get_series("nhdr")):
     shutil.copyfile(os.path.join(FILES, values), os.path.join(folder, f"apart_{number}.values"))
 source = simple.DSMVolumeReader(FileName=apart)
 scene.UpdateAnimationUsingDataTimeSteps()
-display = show(source, view, [0.7], "values")
+display = show(source, view, [0.7], "apart")
 pictures = [go_to(float(number))[0] for number in (3, 1)]
 check((pictures[0] != pictures[1]).any(), "two steps differ")
 shutil.copyfile(os.path.join(folder, "apart_3.values"), os.path.join(folder, "apart_1.values"))

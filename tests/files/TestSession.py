@@ -50,7 +50,7 @@ def make(name, view):
     else:
         moved = [to - at / EDGE for to, at in zip(place, CENTRE)]
         transform(display, translation=moved, scale=[1.0 / EDGE] * 3)
-        display.DSMIsoArray = ["POINTS", "values"]
+        display.DSMIsoArray = ["POINTS", "play"]
         display.DSMIsoValue = 0.7
     shown[name, view] = display
 

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/format/SeriesFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
 #include <gtest/gtest.h>
@@ -253,10 +254,12 @@ TEST(VolumeFiles, ADatasetIsChosenOnlyWhereThereAreDatasets)
 {
   vol::OpenOptions options;
   options.Dataset = "f";
-  for (const char* name : { "ball.mha", "calm_000.nhdr", "ball.zarr", "image.vtkhdf" })
+  for (const char* name : { "ball.mha", "calm_000.nhdr", "image.vtkhdf" })
   {
     ExpectRefusal(name, options, "choosing a dataset ('f')");
   }
+  ExpectRefusal("plate.zarr", options, "no dataset 'f'. Valid datasets: 'A/1/0', 'A/1/1'.");
+  ExpectRefusal("several.zarr", options, "Valid datasets: 'near', 'multiscales/1', ");
   EXPECT_EQ(
     vol::OpenVolumeFile((GetFolder() / "ball.h5").string(), options)->GetArrays().size(), 1u);
   ExpectRefusal("deflate.h5", options, "no dataset 'f'. Valid datasets: 'deep/er/f', 'other'.");
@@ -268,6 +271,43 @@ TEST(VolumeFiles, AxesWithoutAMeaningAreNamed)
   ExpectRefusal("five.h5", {}, "dims[0].label = 'time'");
   ExpectRefusal("five.h5", {}, "'data' (2 x 3 x 10 x 13 x 21) and 1 more.");
   ExpectRefusal("letters.h5", {}, "'v' (10 x 13 x 21; 'x', 'y', 'x')");
+}
+
+/// Positions that are not evenly spaced move, too.
+TEST(VolumeFiles, AnOriginIsThatOfTheFirstSample)
+{
+  const std::string path = (GetFolder() / "uneven.nc").string();
+  const std::vector<double> before = vol::OpenVolumeFile(path)->GetCoordinates()[2];
+  vol::OpenOptions options;
+  options.Origin = { 1.0, 2.0, 3.0 };
+  const auto moved = vol::OpenVolumeFile(path, options);
+  EXPECT_EQ(moved->GetGeometry().Origin[0], 1.0);
+  ASSERT_EQ(moved->GetCoordinates()[2].size(), before.size());
+  for (std::size_t index = 0; index < before.size(); ++index)
+  {
+    EXPECT_DOUBLE_EQ(moved->GetCoordinates()[2][index], 3.0 + before[index] - before.front());
+  }
+}
+
+/// Unless a state has the name that it had before.
+TEST(VolumeFiles, AnArrayWithoutANameIsCalledAsItsFileIs)
+{
+  vol::OpenOptions options;
+  const auto getName = [&](const std::vector<std::string>& names)
+  {
+    std::vector<std::string> paths;
+    for (const std::string& name : names)
+    {
+      paths.push_back((GetFolder() / name).string());
+    }
+    return vol::OpenVolumeSeries(paths, options)->GetArrays().front().Name;
+  };
+  EXPECT_EQ(getName({ "ball.mha" }), "ball");
+  EXPECT_EQ(getName({ "play_001.nhdr" }), "play_001");
+  EXPECT_EQ(getName({ "play_001.nhdr", "play_002.nhdr" }), "play");
+  EXPECT_EQ(getName({ "container.zarr" }), "container");
+  options.ArrayName = "values";
+  EXPECT_EQ(getName({ "play_001.nhdr", "play_002.nhdr" }), "values");
 }
 
 TEST(VolumeFiles, AChunkThatManyThreadsWantIsReadOnce)

@@ -73,13 +73,13 @@ BARE = ["--quiet", "--raw-size", ",".join(map(str, SIZE)), "--raw-type", "float3
 
 def compare(name, what):
     with h5py.File(path(name), "r") as file:
-        array = file["VTKHDF/PointData/values"]
+        array = file["VTKHDF/PointData/convert"]
         check(np.array_equal(array[...], values, equal_nan=True), f"{what}: every value")
         check(array.chunks == (EDGE,) * 3 and array.fletcher32, f"{what}: chunks fit bricks and have checksums")
         attributes = file["VTKHDF"].attrs
         check(list(attributes["WholeExtent"]) == [0, SIZE[0] - 1, 0, SIZE[1] - 1, 0, SIZE[2] - 1] and
               list(attributes["Spacing"]) == [1, 2, 3], f"{what}: the place in the world")
-        index = file["DSM/PointData/values"]
+        index = file["DSM/PointData/convert"]
         expected = find_brick_ranges(values)
         found = read_brick_ranges(index, values.shape)
         check(file["DSM"].attrs["BrickEdge"] == EDGE and found == expected, f"{what}: the ranges of bricks")
@@ -117,8 +117,8 @@ compare("back.vtkhdf", "Zstandard")
 # Other readers pass over what is behind a chunk.
 for packed, name, codec in (("zstd.vtkhdf", "Zstandard", Zstd()), ("deflate_1.vtkhdf", "zlib", Zlib())):
     with h5py.File(path(packed), "r") as file, h5py.File(path("back.vtkhdf"), "r") as whole:
-        array, other = file["VTKHDF/PointData/values"], whole["VTKHDF/PointData/values"]
-        halos = file["DSM/PointData/values"].attrs["HaloSamples"]
+        array, other = file["VTKHDF/PointData/convert"], whole["VTKHDF/PointData/convert"]
+        halos = file["DSM/PointData/convert"].attrs["HaloSamples"]
         filters, stored = array.id.read_direct_chunk((0, 0, 0))
         unpacked = np.frombuffer(codec.decode(stored[:-4]), "u1").reshape(array.dtype.itemsize, -1)
         chunk = np.ascontiguousarray(unpacked.T).view(array.dtype).reshape(array.chunks)
@@ -126,7 +126,7 @@ for packed, name, codec in (("zstd.vtkhdf", "Zstandard", Zstd()), ("deflate_1.vt
         check(halos == 1 and filters == 0 and same, f"numcodecs reads a chunk that has a halo ({name})")
 # What is not compressed has its halo behind the chunk.
 with h5py.File(path("none_1.vtkhdf"), "r") as file:
-    array, group = file["VTKHDF/PointData/values"], file["DSM/PointData/values"]
+    array, group = file["VTKHDF/PointData/convert"], file["DSM/PointData/convert"]
     halos, behind, right = group["Halos"], 0, group.attrs["HaloSamples"] == 1
     for number in range(halos.shape[0]):
         counts = [-(-size // EDGE) for size in SIZE]
@@ -228,12 +228,12 @@ for ranks in (1, 2, 3, 4) if MPIRUN else (1,):
             image = levels[level]["VTKHDF"]
             origin, spacing = origin + 0.5 * spacing, 2 * spacing
             fine = reduce(fine.astype("f8")).astype("f4")
-            array = image["PointData/values"]
+            array = image["PointData/convert"]
             check(array.shape == fine.shape and np.array_equal(array[...], fine, equal_nan=True),
                   f"{name}, level {level}: every value")
             check((image.attrs["Spacing"] == spacing).all() and np.allclose(image.attrs["Origin"], origin, 1e-15, 0),
                   f"{name}, level {level}: the place in the world")
-            index = levels[level]["DSM/PointData/values"]
+            index = levels[level]["DSM/PointData/convert"]
             found = read_brick_ranges(index, fine.shape)
             check("Halos" not in index, f"{name}, level {level}: no samples that would not lie behind their chunks")
             check(array.fletcher32 and found == find_brick_ranges(fine) and len(index["BrickIndex"]) > 0,
@@ -244,8 +244,8 @@ for ranks in (1, 2, 3, 4) if MPIRUN else (1,):
 # One of them is a volume of its own for dsm_convert.
 done = convert("--quiet", "--level", 2, path("levels_1.vtkhdf"), path("level_2.vtkhdf"))
 with h5py.File(path("level_2.vtkhdf"), "r") as one, h5py.File(path("levels_1.vtkhdf"), "r") as all_levels:
-    level = all_levels["DSM/Levels/2/VTKHDF/PointData/values"]
-    check(np.array_equal(one["VTKHDF/PointData/values"], level, equal_nan=True), "a level is read")
+    level = all_levels["DSM/Levels/2/VTKHDF/PointData/convert"]
+    check(np.array_equal(one["VTKHDF/PointData/convert"], level, equal_nan=True), "a level is read")
 done = convert("--quiet", "--level", 4, path("levels_1.vtkhdf"), path("none.vtkhdf"))
 check(done.returncode != 0 and "has no level 4; valid levels are 0 to 3" in done.stderr, "one that is not there is named")
 
@@ -299,8 +299,8 @@ def kill_in_levels():
 
 def compare_big(what):
     with h5py.File(path("big.vtkhdf"), "r") as file:
-        check(np.array_equal(file["VTKHDF/PointData/values"], big), f"{what}: every value")
-        ranges = np.array(read_brick_ranges(file["DSM/PointData/values"], big.shape, 16))
+        check(np.array_equal(file["VTKHDF/PointData/big"], big), f"{what}: every value")
+        ranges = np.array(read_brick_ranges(file["DSM/PointData/big"], big.shape, 16))
         check((ranges[:, 0] == big[::16, ::16, ::16].ravel()).all(), f"{what}: every brick's least value")
 
 
@@ -362,7 +362,7 @@ kept = os.stat(path("big.vtkhdf.part.level1"))
 done = convert("--levels", "all", *BIG, ranks=2)
 check(done.returncode == 0 and glob.glob(path("big.vtkhdf.*")) == [], f"it goes on {done.stderr}")
 with h5py.File(path("big.vtkhdf"), "r") as file:
-    level = file["DSM/Levels/1/VTKHDF/PointData/values"][...]
+    level = file["DSM/Levels/1/VTKHDF/PointData/big"][...]
     check(np.array_equal(level, reduce(big.astype("f8")).astype("f4")), "a level that was there")
     check(len(file["DSM/Levels"]) == 4, "and the others")
 compare_big("with levels")
@@ -372,7 +372,7 @@ big += 1
 big.tofile(path("big.raw"))
 done = convert("--levels", "all", *BIG)
 with h5py.File(path("big.vtkhdf"), "r") as file:
-    level = file["DSM/Levels/1/VTKHDF/PointData/values"][...]
+    level = file["DSM/Levels/1/VTKHDF/PointData/big"][...]
     check(np.array_equal(level, reduce(big.astype("f8")).astype("f4")), "a level of other values")
 os.remove(path("big.vtkhdf"))
 
@@ -397,7 +397,7 @@ check(kill_after(100), "it is killed once more")
 swapped = convert("--raw-big-endian", *BIG)
 check(swapped.returncode == 0, f"then of other bytes {swapped.stderr}")
 with h5py.File(path("big.vtkhdf"), "r") as file:
-    check(np.array_equal(file["VTKHDF/PointData/values"][...], big.view(">f4").astype("<f4"), equal_nan=True),
+    check(np.array_equal(file["VTKHDF/PointData/big"][...], big.view(">f4").astype("<f4"), equal_nan=True),
           "all values are the other ones")
 os.remove(path("big.vtkhdf"))
 

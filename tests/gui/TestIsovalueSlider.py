@@ -219,7 +219,7 @@ class Session:
             source.RawDimensions, source.RawScalarType = [8, 8, 8], "float"
             display.Representation = "DSM Ray Traced"
             simple.Render(self.view)
-            check(display.DSMIsoArray[1] == "values", f"there is one now: {display.DSMIsoArray}")
+            check(display.DSMIsoArray[1] == "late", f"there is one now: {display.DSMIsoArray}")
             check(list(display.DSMCroppingBox) == [0, 7] * 3, f"and a box to crop to: {display.DSMCroppingBox}")
             check(0.0 < display.DSMIsoValue < 511.0, f"and an isovalue: {display.DSMIsoValue}")
             simple.Delete(source)

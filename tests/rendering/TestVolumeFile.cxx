@@ -103,7 +103,7 @@ protected:
 
   /// The colors of a picture of all that is new but the file.
   std::vector<unsigned char> Render(const std::string& name = "ball.raw",
-    const char* array = "values", int mebibytes = 128, bool onCells = false)
+    const char* array = "ball", int mebibytes = 128, bool onCells = false)
   {
     vtkDSMVolumeReader::SetCacheMebibytes(0); // forgets what is there
     vtkDSMVolumeReader::SetCacheMebibytes(mebibytes);
@@ -255,7 +255,7 @@ TEST_F(VolumeFile, PlayingFetchesTheNextStep)
   reader->SetRawScalarType(VTK_FLOAT);
   vtkNew<vtkDSMVolumeMapper> mapper;
   mapper->SetInputConnection(reader->GetOutputPort());
-  mapper->SetIsoArray("values");
+  mapper->SetIsoArray("ball");
   mapper->SetIsoValue(0, 0.15);
   vtkNew<vtkVolume> volume;
   volume->SetMapper(mapper);

@@ -79,7 +79,7 @@ def write_series(name, frames, **others):
             header.write(f"endian: little\nencoding: raw\ndata file: {file}.bin\n")
         image.SetDimensions(*reversed(frame.shape))
         image.GetPointData().SetScalars(numpy_to_vtk(frame.ravel(), deep=True))
-        image.GetPointData().GetScalars().SetName("values")
+        image.GetPointData().GetScalars().SetName(name)
         for other, values_of_frames in others.items():
             array = numpy_to_vtk(values_of_frames[number].ravel(), deep=True)
             array.SetName(other)
@@ -93,7 +93,7 @@ def write_series(name, frames, **others):
 # A ball that changes with time: files of four steps, and one of all.
 steps = [(ball * (1 + 0.2 * t) + 0.05 * t * x).astype("<f4") for t in range(4)]
 write_series("play", steps)
-write_steps("play.vtkhdf", [0.0, 1.0, 2.0, 3.0], [("values", np.stack(steps), None)], edges)
+write_steps("play.vtkhdf", [0.0, 1.0, 2.0, 3.0], [("play", np.stack(steps), None)], edges)
 
 # A ball of which little changes from step to step: bricks at one corner; the third step is as the second.
 edges = (81, 81, 81)
@@ -105,5 +105,5 @@ for step, more in zip(steps, (0.0, 0.05, 0.05, 0.1)):
 write_series("calm", steps)
 tints = [(x + 0.3 * t).astype("<f4") for t in range(4)]
 write_series("tinted", steps, tint=tints)
-stacks = [("values", np.stack(steps), None), ("tint", np.stack(tints), None)]
+stacks = [("tinted", np.stack(steps), None), ("tint", np.stack(tints), None)]
 write_steps("tinted.vtkhdf", [0.0, 1.0, 2.0, 3.0], stacks, edges)

@@ -28,7 +28,7 @@ for name in ("attached.mha", "detached.mhd"):
     if name.endswith("mhd"):
         writer.SetRAWFileName(path("detached.bin"))
     writer.Write()
-    note(name, [("values", "int16")], spacing=[0.5, 0.25, 2.0], origin=[1.0, 2.0, 3.0])
+    note(name, [(None, "int16")], spacing=[0.5, 0.25, 2.0], origin=[1.0, 2.0, 3.0])
 
 # Teem's NRRD.
 unu = shutil.which("teem-unu") or shutil.which("unu")
@@ -43,7 +43,7 @@ for name, dtype, teem, endian in (
     made = subprocess.run(make, stdout=subprocess.PIPE, check=True).stdout
     subprocess.run(save, input=made, check=True)
     os.remove(raw)
-    note(name, [("values", np.dtype(dtype).name)])
+    note(name, [(None, np.dtype(dtype).name)])
 
 # Compressed, and in several files.
 for name, how, end in (("gzip.nrrd", "gzip:9", ""), ("bzip2.nhdr", "bzip2", "raw.bz2"), ("gzip.nhdr", "gzip", "raw.gz")):
@@ -53,14 +53,14 @@ for name, how, end in (("gzip.nrrd", "gzip:9", ""), ("bzip2.nhdr", "bzip2", "raw
     made = subprocess.run(make, stdout=subprocess.PIPE, check=True).stdout
     subprocess.run([unu, "save", "-f", "nrrd", "-e", how, "-o", path(name)], input=made, check=True)
     os.remove(raw)
-    note(name, [("values", "uint16")])
+    note(name, [(None, "uint16")])
 for name in ("packed.mha", "packed.mhd"):
     writer = vtkMetaImageWriter()
     writer.SetInputData(image)
     writer.SetCompression(True)
     writer.SetFileName(path(name))
     writer.Write()
-    note(name, [("values", "int16")], spacing=[0.5, 0.25, 2.0], origin=[1.0, 2.0, 3.0])
+    note(name, [(None, "int16")], spacing=[0.5, 0.25, 2.0], origin=[1.0, 2.0, 3.0])
 
 os.makedirs(path("slices_50%"))
 slices = [f"slices_50%/s{number:03d}.raw" for number in range(-2, 18, 2)]
@@ -81,7 +81,7 @@ for name, pack in (("zeros.gz", gzip.compress), ("zeros.bz2", bz2.compress)):
         file.write(pack(bytes(1 << 18)))
 make = [unu, "make", "-h", "-t", "float", "-s", *map(str, SIZE), "-e", "raw", "-en", "little"]
 subprocess.run([*make, "-i", *slices, "-o", path("list.nhdr")], check=True)
-note("list.nhdr", [("values", "float32")])
+note("list.nhdr", [(None, "float32")])
 
 # Headers as people write them.
 values("<f4").tofile(path("headers.bin"))
@@ -96,7 +96,7 @@ headers = {
     "blanks.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\nspace dimension: 3\ncontent:\nkey:=value\ntype:=large\n"
         "space directions: (0, 2, 0) ( -3, 0, 0 ) (0,0,4)\nspace origin: (10, 20, 30)\ndata file: headers.bin\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {
             "origin": [10.0, 20.0, 30.0],
             "spacing": [2.0, 3.0, 4.0],
@@ -106,53 +106,86 @@ headers = {
     "joined.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\nspacings: 1.5 -2 2\naxismins: 1 2 3\n"
         "centers: node node cell\ndatafile: skipped.bin\nbyteskip: -1\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {
             "origin": [1.0, 2.0, 4.0],
             "spacing": [1.5, 2.0, 2.0],
             "direction": [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0],
         },
     ),
+    # Positions of cells: the first sample is in the middle of the first one.
+    "cells.nhdr": (
+        "type: float\ndimension: 3\nsizes: 21 13 10\nspacings: 1 2 -4\naxis mins: 10 20 30\n"
+        "centerings: cell cell cell\ndata file: headers.bin\n",
+        [(None, "float32")],
+        {
+            "origin": [10.5, 21.0, 28.0],
+            "spacing": [1.0, 2.0, 4.0],
+            "direction": [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
+        },
+    ),
+    "cells_between.nhdr": (
+        "type: float\ndimension: 3\nsizes: 21 13 10\naxis mins: 10 20 30\naxis maxs: 31 46 70\n"
+        "centerings: cell cell cell\ndata file: headers.bin\n",
+        [(None, "float32")],
+        {"origin": [10.5, 21.0, 32.0], "spacing": [1.0, 2.0, 4.0]},
+    ),
+    # Four axes, without a word what they are.
+    "four_first.nhdr": (
+        "type: int16\ndimension: 4\nsizes: 3 21 13 10\ndata file: components.bin\n",
+        [(None, "int16", 3)],
+        {},
+    ),
+    "four_last.nhdr": (
+        "type: int16\ndimension: 4\nsizes: 21 13 10 3\nendian: big\ndata file: apart%d.bin 0 2 1\n",
+        [(None, "int16", 3)],
+        {"warnings": ["without 'kinds'"]},
+    ),
+    "four_one.nhdr": (
+        "type: float\ndimension: 4\nsizes: 21 13 10 1\ndata file: headers.bin\n",
+        [(None, "float32")],
+        {},
+    ),
     "kinds.nhdr": (
         "type: int16\ndimension: 4\nsizes: 3 21 13 10\nkinds: vector domain domain domain\ndata file: components.bin\n",
-        [("values", "int16", 3)],
+        [(None, "int16", 3)],
         {},
     ),
     "pattern.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\ndata file: slices_50%%/s%03d.raw -2 16 2\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {},
     ),
     "rows.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\ndata file: slices_50%%/row%d.raw 0 129 1 1\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {},
     ),
     "halves.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\nencoding: gz\nline skip: 1\nbyte skip: 4\n"
         "data file: LIST 3\nhalf1.gz\nhalf2.gz\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {},
     ),
     "last.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\nencoding: bz2\nbyte skip: -1\ndata file: last.bz2\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {},
     ),
     "lines.nhdr": (
         "type: float\ndimension: 3\nsizes: 21 13 10\nline skip: 2\nbyte skip: 16\ndata file: skipped.bin\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {},
     ),
     "apart.nhdr": (
         "type: int16\ndimension: 4\nsizes: 21 13 10 3\nkinds: domain domain domain list\nendian: big\n"
         "data file: apart%d.bin 0 2 1\n",
-        [("values", "int16", 3)],
+        [(None, "int16", 3)],
         {},
     ),
     "flat.nhdr": (
         "type: uchar\ndimension: 3\nsizes: 3 21 13\nkinds: RGB-color domain domain\ndata file: flat.bin\n",
-        [("values", "uint8", 3)],
+        [(None, "uint8", 3)],
         {"size": (21, 13, 1)},
     ),
 }
@@ -178,13 +211,13 @@ for name, space, (x, y), more, warnings in (
     headers[f"space_{name}.nhdr"] = (
         f"type: float\ndimension: 3\nsizes: 21 13 10\n{space}\n{more}space origin: ({10 * x},{20 * y},30{end}\n"
         f"space directions: (0,{2 * y},0{end} ({-3 * x},0,0{end} (0,0,4{end}\ndata file: headers.bin\n",
-        [("values", "float32")],
+        [(None, "float32")],
         {**head, "warnings": warnings},
     )
 headers["slice.nhdr"] = (
     "type: uchar\ndimension: 3\nsizes: 3 21 13\nkinds: RGB-color domain domain\nspace: RAS\n"
     "space directions: none (0,-2,0) (0,0,4)\nspace origin: (1,2,3)\ndata file: flat.bin\n",
-    [("values", "uint8", 3)],
+    [(None, "uint8", 3)],
     {
         "size": (21, 13, 1),
         "origin": [-1.0, -2.0, 3.0],
@@ -195,7 +228,7 @@ headers["slice.nhdr"] = (
 headers["frame.nhdr"] = (
     "type: int16\ndimension: 4\nsizes: 3 21 13 10\nkinds: vector domain domain domain\nspace dimension: 3\n"
     "measurement frame: (0,1,0) (1,0,0) (0,0,1)\nthicknesses: nan nan nan 2\ndata file: components.bin\n",
-    [("values", "int16", 3)],
+    [(None, "int16", 3)],
     {"warnings": ["'measurement frame'", "'thicknesses'"]},
 )
 for name, (text, arrays, more) in headers.items():
@@ -210,7 +243,7 @@ for name, text in (
     values(">i4").tofile(path("big.bin"))
     with open(path(name), "w", encoding="utf-8") as file:
         file.write("NDims = 3\nDimSize = 21 13 10\n" + text)
-    note(name, [("values", "float32" if "colons" in name else "int32")])
+    note(name, [(None, "float32" if "colons" in name else "int32")])
 
 for name, text, more in (
     ("list.mhd", "ElementDataFile = LIST\n" + "\n".join(slices), {}),
@@ -234,25 +267,25 @@ for name, text, more in (
 ):
     with open(path(name), "w", encoding="utf-8") as file:
         file.write("NDims = 3\nDimSize = 21 13 10\nElementType = MET_FLOAT\n" + text)
-    note(name, [("values", "float32")], **more)
+    note(name, [(None, "float32")], **more)
 
 with open(path("backwards.mhd"), "w", encoding="utf-8") as file:
     file.write("NDims = 3\nDimSize = 21 13 10\nElementType = MET_FLOAT\nElementSpacing = 1 -2 3\nElementDataFile = headers.bin\n")
-note("backwards.mhd", [("values", "float32")], spacing=[1.0, 2.0, 3.0])
+note("backwards.mhd", [(None, "float32")], spacing=[1.0, 2.0, 3.0])
 
 # Of what a header says of its own size, MetaIO makes a place in the file, also where the values follow it.
 for name, size, between in (("skip.mha", 300, 300), ("skip_all.mha", -1, 200)):
     header = f"NDims = 3\nDimSize = 21 13 10\nElementType = MET_SHORT\nHeaderSize = {size}\nElementDataFile = LOCAL\n"
     with open(path(name), "wb") as file:
         file.write(header.encode().ljust(between, b"y") + values("<i2").tobytes())
-    note(name, [("values", "int16")])
+    note(name, [(None, "int16")])
 # Bare values.
 with open(path("bare.raw"), "wb") as file:
     file.write(b"a header of 21 bytes.")
     file.write(values(">i4").tobytes())
 note(
     "bare.raw",
-    [("values", "int32")],
+    [(None, "int32")],
     raw={"type": "int32", "big": True, "header": 21, "spacing": [1.0, 1.0, 3.0]},
     spacing=[1.0, 1.0, 3.0],
 )

@@ -106,6 +106,31 @@ with h5py.File(path("emd.h5"), "w") as file:
         group[f"dim{axis + 1}"] = 2.0 + (axis + 1) * np.arange(count)
         group[f"dim{axis + 1}"].attrs["name"], group[f"dim{axis + 1}"].attrs["units"] = name, "[n_m]"
 note("emd.h5", [("experiment/tomogram/data", "uint16")], spacing=[1.0, 2.0, 3.0], origin=[2.0] * 3)
+# Imaris: extents from edge to edge, datasets that are padded to whole chunks, a coarser level.
+with h5py.File(path("image.ims"), "w") as file:
+    def tell(group, **told):
+        for name, text in told.items():
+            group.attrs[name] = np.frombuffer(str(text).encode(), "S1")
+
+    tell(file.create_group("DataSetInfo/Image"), X=21, Y=13, Z=10, Unit="um", ExtMin0=10, ExtMin1=20, ExtMin2=30, ExtMax0=31, ExtMax1=46, ExtMax2=70)
+    for step in range(2):
+        for channel, how in enumerate(({"compression": "gzip"}, {})):
+            padded = np.full((12, 15, 24), 999, "<u2")
+            padded[:10, :13, :21] = values("<u2", channel=channel, step=step)
+            group = file.create_group(f"DataSet/ResolutionLevel 0/TimePoint {step}/Channel {channel}")
+            group.create_dataset("Data", data=padded, chunks=(4, 5, 8), **how)
+            group = file.create_group(f"DataSet/ResolutionLevel 1/TimePoint {step}/Channel {channel}")
+            group.create_dataset("Data", data=padded[::2, ::2, ::2], chunks=(4, 5, 8))
+            tell(group, ImageSizeX=11, ImageSizeY=7, ImageSizeZ=5)
+note(
+    "image.ims", [("Channel 0", "uint16"), ("Channel 1", "uint16", 1, 1)], steps=2, spacing=[1.0, 2.0, 4.0],
+    origin=[10.5, 21.0, 32.0],
+)
+CHOSEN = "DataSet/ResolutionLevel 1/TimePoint 0/Channel 0/Data"
+note(
+    "image.ims", [(CHOSEN, "uint16")], dataset=CHOSEN, size=(11, 7, 5), stride=2, spacing=[21 / 11, 26 / 7, 8.0],
+    origin=[10 + 21 / 22, 20 + 13 / 7, 34.0],
+)
 with h5py.File(path("voxel_size.h5"), "w") as file:
     file.create_dataset("f", data=values("<f4")).attrs["element_size_um"] = [4.0, 1.0, 0.5]
 note("voxel_size.h5", [("f", "float32")], spacing=[0.5, 1.0, 4.0])
@@ -159,20 +184,28 @@ for name, compressor in (("turned.zarr", "default"), ("turned_raw.zarr", None)):
     note(name, [(name[: -len(".zarr")], "float32")], spacing=[1.0, 2.0, 4.0])
 
 # OME-Zarr 0.6: coordinate systems, transformations in one another, units that differ.
-def write_ome6(name, transformation, data, systems, **more):
+def write_ome6(name, transformation, data, systems, coarser=None, **more):
+    """coarser: the transformation of another level; then that one is noted."""
     group = zarr.open_group(path(name), mode="w", **LATER)
     save_zarr(name + "/s0", data, chunks=(1,) * (data.ndim - 3) + (4, 5, 8))
-    io = {"input": {"path": "s0"}, "output": {"name": "intrinsic"}}
+    datasets = [(transformation, "s0")]
+    if coarser:
+        save_zarr(name + "/s1", data[::2, ::2, ::2], chunks=(4, 5, 8))
+        datasets.append((coarser, "s1"))
+        more = {"levels": 2, "level": 1, "size": (11, 7, 5), "stride": 2, **more}
     group.attrs["ome"] = {
         "version": "0.6",
         "multiscales": [
             {
                 "coordinateSystems": [{"name": "other", "axes": []}, {"name": "intrinsic", "axes": systems}],
-                "datasets": [{"path": "s0", "coordinateTransformations": [{**transformation, **io}]}],
+                "datasets": [
+                    {"path": level, "coordinateTransformations": [{**how, "input": {"path": level}, "output": {"name": "intrinsic"}}]}
+                    for how, level in datasets
+                ],
             }
         ],
     }
-    note(name, [("values", "float32")], **more)
+    note(name, [(None, "float32")], **more)
 
 
 def scale(numbers):
@@ -207,11 +240,17 @@ write_ome6(
     direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
 )
 
+TURNED = {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}
+write_ome6(
+    "six_turned_levels.zarr", TURNED, values("<f4"), SPACE, {"type": "sequence", "transformations": [scale([2, 2, 2]), TURNED]},
+    spacing=[2.0] * 3, origin=[-0.1, 0.7, 0.5], direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
+)
+
 # OME-Zarr 0.1, which tells names of arrays alone.
 group = zarr.open_group(path("ome1.zarr"), mode="w", **LATER)
 save_zarr("ome1.zarr/0", values("<f4"), chunks=(4, 5, 8))
 save_zarr("ome1.zarr/1", values("<f4")[::2, ::2, ::2], chunks=(4, 5, 8))
 group.attrs["multiscales"] = [{"version": "0.1", "datasets": [{"path": "0"}, {"path": "1"}]}]
 note(
-    "ome1.zarr", [("values", "float32")], levels=2, level=1, size=(11, 7, 5), stride=2, spacing=[2.0] * 3, origin=[0.5] * 3,
+    "ome1.zarr", [(None, "float32")], levels=2, level=1, size=(11, 7, 5), stride=2, spacing=[2.0] * 3, origin=[0.5] * 3,
 )

@@ -36,9 +36,11 @@ def create_image(file, size=SIZE, version=(1, 0)):
 
 
 def note(name, arrays, **more):
-    """arrays: name, type, components, channel, on cells, without time."""
+    """arrays: name (None: as the file is called), type, components, channel, on cells, without time."""
     keys = ("name", "type", "components", "channel", "cells", "still")
     defaults = (None, None, 1, 0, False, False)
     listed = [dict(zip(keys, (*array, *defaults[len(array) :]))) for array in arrays]
+    for array in listed:
+        array["name"] = array["name"] or os.path.splitext(name)[0]
     entry = {"file": name, "arrays": listed, "steps": 1, "level": 0, "dataset": "", "size": SIZE}
     entries.append({**entry, **more})

@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import struct
 
 import numpy as np
@@ -171,7 +172,7 @@ group.attrs["multiscales"] = [
         "datasets": [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [4, 2, 1, 1]}]}],
     }
 ]
-note("ome_last.zarr", [("values", "uint8", 3)], spacing=[1.0, 2.0, 4.0])
+note("ome_last.zarr", [(None, "uint8", 3)], spacing=[1.0, 2.0, 4.0])
 
 # OME-Zarr: two channels, three times, two scales.
 group = zarr.open_group(path("ome.zarr"), mode="w", **LATER)
@@ -204,6 +205,54 @@ note(
     "ome.zarr", channels, steps=3, spacing=[2.0, 4.0, 8.0], levels=2, level=1, size=(11, 7, 5), stride=2,
     origin=[0.5, 1.0, 2.0],
 )
+
+
+# A place of the whole image leaves coarser levels where they are in it.
+shutil.copytree(path("ome.zarr"), path("ome_moved.zarr"))
+moved = zarr.open_group(path("ome_moved.zarr"), mode="r+", **LATER)
+transformations = [{"type": "translation", "translation": [0, 0, 10, 20, 30]}]
+moved.attrs["multiscales"] = [{**group.attrs["multiscales"][0], "coordinateTransformations": transformations}]
+for level, more in enumerate((
+    {"spacing": [1.0, 2.0, 4.0], "origin": [30.0, 20.0, 10.0]},
+    {"spacing": [2.0, 4.0, 8.0], "origin": [30.5, 21.0, 12.0], "size": (11, 7, 5), "stride": 2},
+)):
+    note("ome_moved.zarr", channels, steps=3, levels=2, level=level, **more)
+
+
+# Folders of several images: containers, plates, groups in one another, several images on the same axes.
+def write_image(name, channel=0, names=("",)):
+    image = zarr.open_group(path(name), mode="w", **LATER)
+    scales = []
+    for number, own in enumerate(names):
+        save_zarr(f"{name}/{number}", values("|u1", channel=channel + number), chunks=(4, 5, 8))
+        scale = [{"type": "scale", "scale": [4, 2, number + 1]}]
+        datasets = [{"path": str(number), "coordinateTransformations": scale}]
+        space = [{"name": letter, "type": "space"} for letter in "zyx"]
+        scales.append({"version": "0.4", "name": own, "axes": space, "datasets": datasets})
+    image.attrs["multiscales"] = scales
+
+
+def write_groups(name, told, inner):
+    zarr.open_group(path(name), mode="w", **LATER).attrs.update(told)
+    for each in inner:
+        zarr.open_group(path(f"{name}/{each}"), mode="w", **LATER)
+
+
+PLACED = {"spacing": [1.0, 2.0, 4.0]}
+write_groups("container.zarr", {"bioformats2raw.layout": 3}, ["OME"])
+write_image("container.zarr/0")
+note("container.zarr", [(None, "uint8")], **PLACED)
+write_groups("plate.zarr", {"plate": {"wells": [{"path": "A/1"}]}}, ["A", "A/1"])
+write_image("plate.zarr/A/1/0")
+write_image("plate.zarr/A/1/1", channel=5)
+note("plate.zarr", [(None, "uint8")], warnings=["'A/1/0' is shown. Enter another one as Dataset: 'A/1/0', 'A/1/1'"], **PLACED)
+note("plate.zarr", [("A/1/1", "uint8", 1, 5)], dataset="A/1/1", **PLACED)
+write_groups("deeper.zarr", {}, ["run", "run/fields"])
+save_zarr("deeper.zarr/run/fields/a", values("|u1"), chunks=(4, 5, 8))
+note("deeper.zarr", [("a", "uint8")])
+write_image("several.zarr", names=("near", "", "near"))
+note("several.zarr", [(None, "uint8")], warnings=["'near', 'multiscales/1', 'multiscales/2'"], **PLACED)
+note("several.zarr", [("multiscales/1", "uint8", 1, 1)], dataset="multiscales/1", spacing=[2.0, 2.0, 4.0])
 
 
 # Zarr, version 3, which zarr 2 cannot write: by hand, after the specification.

@@ -4,6 +4,7 @@
 
 #include "DSMBricks/base/Box.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -29,6 +30,23 @@ inline void CopyBox(const bricks::Box& box, const std::byte* from, const bricks:
     {
       std::memcpy(to + getOffset(toBox, y, z), from + getOffset(fromBox, y, z), row);
     }
+  }
+}
+
+/// Fills `bytes` with copies of one sample, or of several.
+inline void Repeat(
+  const std::byte* sample, std::size_t sampleBytes, std::byte* out, std::size_t bytes)
+{
+  // Each pass copies what is there already, as long as that stays in the processor's cache.
+  constexpr std::size_t most = 1 << 14;
+  std::size_t done = std::min(bytes, sampleBytes);
+  std::memcpy(out, sample, done);
+  for (std::size_t unit = done; done < bytes;)
+  {
+    const std::size_t more = std::min(unit, bytes - done);
+    std::memcpy(out + done, out, more);
+    done += more;
+    unit = unit < most ? done : unit;
   }
 }
 

@@ -71,6 +71,25 @@ bool IsPlainName(const std::string& name)
   return !name.empty() && name != ".." && name.find('/') == std::string::npos;
 }
 
+std::string ListNames(const std::vector<std::string>& names, const std::vector<std::string>& notes)
+{
+  constexpr std::size_t most = 10;
+  std::string list = names.empty() ? "none" : "";
+  for (std::size_t index = 0; index < std::min(most, names.size()); ++index)
+  {
+    list += (index > 0 ? ", '" : "'") + names[index] + "'";
+    list += notes.empty() ? "" : " (" + notes[index] + ")";
+  }
+  return list +
+    (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");
+}
+
+std::string GetStem(const std::string& path)
+{
+  const std::filesystem::path stem = std::filesystem::path(path).stem();
+  return (stem.extension() == ".ome" ? stem.stem() : stem).string();
+}
+
 std::string Quote(const std::string& text)
 {
   constexpr std::size_t most = 100;

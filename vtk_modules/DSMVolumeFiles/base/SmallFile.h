@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace vol
 {
@@ -30,6 +31,14 @@ std::string ReadWhole(const std::string& path, std::size_t most);
 
 /// Returns whether a name from a file leads nowhere else when it is put behind a folder.
 bool IsPlainName(const std::string& name);
+
+/// Returns the first of some names in quotation marks, as the end of a sentence. `notes`: one for each name, in parentheses
+/// behind it; or none.
+std::string ListNames(
+  const std::vector<std::string>& names, const std::vector<std::string>& notes = {});
+
+/// Returns a file's name without its folder and extension.
+std::string GetStem(const std::string& path);
 
 /// Text of a file in quotation marks, for messages: shortened, and without control characters.
 std::string Quote(const std::string& text);

@@ -25,6 +25,9 @@ constexpr std::size_t SharedBytes = std::size_t(128) << 20;
 /// While a chunk is read, its bytes as the file has them are in memory, too, which hardly are more than it.
 constexpr std::size_t InHandOfEach = 2;
 
+/// About what a chunk takes beside its samples: a chunk may have a single one.
+constexpr std::size_t EntryBytes = 400;
+
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
 
@@ -237,9 +240,9 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
     Entry& entry = this->Entries.at(key);
     this->Order.push_front(key);
     entry.Place = this->Order.begin();
-    entry.Bytes = bytes->size();
+    entry.Bytes = bytes->size() + EntryBytes;
     this->Bytes += entry.Bytes;
-    this->BytesRead += entry.Bytes;
+    this->BytesRead += bytes->size();
     promise.set_value(bytes);
     this->Evict();
     return bytes;
@@ -302,7 +305,8 @@ bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::si
 void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
   const bricks::Box& box, bool scattered, std::byte* out)
 {
-  if (this->ReadWithHalo(file, array, step, box, out))
+  if (this->ReadWithHalo(file, array, step, box, out) ||
+    this->ReadFill(file, array, step, box, out))
   {
     return;
   }
@@ -342,6 +346,22 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
   }
   const std::lock_guard<std::mutex> lock(this->Guard);
   this->BytesRead += static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes();
+  return true;
+}
+
+bool ChunkCache::ReadFill(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
+  int step, const bricks::Box& box, std::byte* out)
+{
+  const FileArray& what = file->GetArrays()[array];
+  const bricks::Index3 chunk = box.Min / what.Grid.ChunkSamples;
+  const bool isInOne = bricks::Intersect(what.Grid.GetBox(chunk), box).GetCount() == box.GetCount();
+  if (isInOne || !file->IsFill(array, step, box))
+  {
+    return false;
+  }
+  const Chunk samples = this->Get(file, array, step, chunk);
+  Repeat(samples->data(), what.GetSampleBytes(), out,
+    static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
   return true;
 }
 

@@ -115,6 +115,9 @@ private:
   /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
   bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
     const bricks::Box& box, std::byte* out);
+  /// A box of several chunks, none of which is stored.
+  bool ReadFill(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
+    const bricks::Box& box, std::byte* out);
   /// Under the lock, as GetRoom without it.
   std::size_t ComputeRoom() const
   {

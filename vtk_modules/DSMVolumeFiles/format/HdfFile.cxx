@@ -400,7 +400,7 @@ private:
     {
       this->Warnings.push_back("has arrays at different positions. All are shown at those of " +
         Quote(this->Arrays.front().Name) +
-        ". Arrays at other positions: " + ListHdfNames(displaced));
+        ". Arrays at other positions: " + ListNames(displaced));
     }
   }
 

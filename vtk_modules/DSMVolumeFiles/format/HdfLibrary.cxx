@@ -2,6 +2,8 @@
 #include "DSMVolumeFiles/format/HdfLibrary.h"
 
 #include "DSMCore/base/ReaderThreads.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/format/HdfHeap.h"
 
 #include <algorithm>
 #include <atomic>
@@ -97,20 +99,6 @@ std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll)
   visit.Objects = 0;
   H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, &NoteLink, &visit);
   return std::move(visit.Names);
-}
-
-std::string ListHdfNames(
-  const std::vector<std::string>& names, const std::vector<std::string>& notes)
-{
-  constexpr std::size_t most = 10;
-  std::string list = names.empty() ? "none" : "";
-  for (std::size_t index = 0; index < std::min(most, names.size()); ++index)
-  {
-    list += (index > 0 ? ", '" : "'") + names[index] + "'";
-    list += notes.empty() ? "" : " (" + notes[index] + ")";
-  }
-  return list +
-    (names.size() > most ? " and " + std::to_string(names.size() - most) + " more." : ".");
 }
 
 hid_t GetHdfType(bricks::ScalarType type)
@@ -215,6 +203,7 @@ std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
   const auto all = static_cast<std::size_t>(count);
   if (H5Tis_variable_str(type.Get()) > 0)
   {
+    CheckHdfHeap(attribute.Get(), all);
     std::vector<char*> read(all, nullptr);
     const bool isRead = H5Aread(attribute.Get(), type.Get(), read.data()) >= 0;
     for (char* const text : read)
@@ -250,8 +239,12 @@ std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t ax
   const HdfHandle references(H5Tvlen_create(H5T_STD_REF_OBJ), &H5Tclose);
   std::vector<hvl_t> lists(axes);
   if (H5Sget_simple_extent_npoints(space.Get()) != static_cast<hssize_t>(axes) ||
-    H5Tequal(type.Get(), references.Get()) <= 0 ||
-    H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
+    H5Tequal(type.Get(), references.Get()) <= 0)
+  {
+    return paths;
+  }
+  CheckHdfHeap(attribute.Get(), axes);
+  if (H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
   {
     return paths;
   }

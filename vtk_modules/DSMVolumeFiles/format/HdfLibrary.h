@@ -41,10 +41,6 @@ bool IsHdfNumber(hid_t type);
 /// The names of what may be datasets, in all groups of a file, and behind external links. `areAll`: set to false where an
 /// object cannot be read, so that others may not be found. Under the lock.
 std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll = nullptr);
-/// The first of some names, as the end of a sentence. `notes`: of each, in parentheses behind it;
-/// or none.
-std::string ListHdfNames(
-  const std::vector<std::string>& names, const std::vector<std::string>& notes = {});
 
 /// After the library's first use: from then on the end of the process is noticed.
 void WatchHdfEnd();

@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/format/HdfNotes.h"
 #include "DSMVolumeFiles/format/HdfOrigins.h"
 #include "DSMVolumeFiles/format/HdfValues.h"
+#include "DSMVolumeFiles/format/ImarisVolumes.h"
 #include "DSMVolumeFiles/format/OpenPmdSteps.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ struct OtherDatasets
     const std::string closed = this->Closed.empty()
       ? std::string()
       : "datasets that HDF5 cannot open, which are damaged or in files that do not exist: " +
-        ListHdfNames(this->Closed);
+        ListNames(this->Closed);
     return this->AreAll ? closed
                         : "an object that cannot be read, so that the file is damaged. Datasets "
                           "after it are not shown.";
@@ -65,7 +66,7 @@ struct OtherDatasets
     return this->OfTypes.empty() ? std::string()
                                  : "datasets that are not shown because their values are not "
                                    "numbers. Write them as numbers: " +
-        ListHdfNames(this->OfTypes, this->Types);
+        ListNames(this->OfTypes, this->Types);
   }
 
   /// As HdfVolumes::Missing.
@@ -92,7 +93,7 @@ struct OtherDatasets
     }
     return OpenHdfDataset(file, wanted).IsOpen()
       ? "volume in its dataset '" + wanted + "'." + shapes
-      : "dataset '" + wanted + "'. Valid datasets: " + ListHdfNames(FindHdfDatasets(file));
+      : "dataset '" + wanted + "'. Valid datasets: " + ListNames(FindHdfDatasets(file));
   }
 };
 
@@ -186,6 +187,7 @@ HdfVolumes HdfVolumes::Find(hid_t file, const std::string& path, const std::stri
   {
     JoinOpenPmdSteps(file, volumes);
   }
+  PlaceImaris(file, volumes, wanted.empty());
   std::stable_sort(found.begin(), found.end(),
     [](const HdfVolume& a, const HdfVolume& b) { return a.Datasets.front() < b.Datasets.front(); });
   return volumes;

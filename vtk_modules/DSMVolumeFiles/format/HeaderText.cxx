@@ -98,11 +98,9 @@ void HeaderText::AddLine(const std::string& line, const std::string& separator)
     return;
   }
   std::string name = ToLower(Trim(line.substr(0, place)));
-  for (const std::string& known : this->Names)
+  for (const auto& [known, other] : this->Names)
   {
-    std::string together = known;
-    together.erase(std::remove(together.begin(), together.end(), ' '), together.end());
-    name = name == together ? known : name;
+    name = name == other ? known : name;
   }
   this->Values[name] = Trim(line.substr(place + separator.size()));
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vol
@@ -38,8 +39,9 @@ private:
 class HeaderText
 {
 public:
-  /// `what`: the path of the file. `names`: of several words, which some programs write as one.
-  explicit HeaderText(std::string what, std::vector<std::string> names = {})
+  using OtherNames = std::vector<std::pair<std::string, std::string>>;
+  /// `what`: the path of the file. `names`: each with another one that some programs write.
+  explicit HeaderText(std::string what, OtherNames names = {})
     : What(std::move(what))
     , Names(std::move(names))
   {
@@ -76,7 +78,7 @@ private:
   static constexpr std::int64_t MostInteger = std::int64_t(1) << 53;
 
   std::string What;
-  std::vector<std::string> Names;
+  OtherNames Names;
   std::map<std::string, std::string> Values;
 };
 

@@ -70,7 +70,7 @@ std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path, const OpenOpt
                   "example with ParaView's Meta Image reader and Save Data.");
   }
   BareValues values;
-  values.Name = "values";
+  values.Name = options.GetArrayName(path);
   const std::vector<std::int64_t> size = header.GetIntegers("dimsize", 3);
   for (std::size_t axis = 0; axis < size.size(); ++axis)
   {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace vol
@@ -46,25 +47,70 @@ bricks::ScalarType ParseType(const HeaderText& header)
   return known->second;
 }
 
-/// Which of its axes are those of space, or of time; what lies along the others are components.
-std::vector<std::size_t> FindDomain(const HeaderText& header, std::size_t axes)
+/// Returns which of four axes has the components, where the header says nothing of them: the first one, as is usual, or else
+/// the last one, if that alone is short enough.
+std::size_t GuessComponents(const HeaderText& header, const std::vector<std::int64_t>& sizes,
+  std::vector<std::string>& warnings)
 {
-  const std::vector<std::string> kinds =
-    HeaderText::Split(HeaderText::ToLower(header.Get("kinds")));
+  constexpr std::int64_t most = 9; // a tensor's
+  const std::int64_t first = sizes.front();
+  const std::int64_t last = sizes.back();
+  if (first <= most && (first <= last || last > most))
+  {
+    return 0;
+  }
+  if (first <= most || last > most)
+  {
+    header.Refuse("it has four axes (" + header.Get("sizes") +
+      ") without 'kinds', and its components may lie along the first one or the last one. Add the "
+      "line 'kinds: vector domain domain domain' or 'kinds: domain domain domain vector' to the "
+      "header. If an axis is time, save each time step as a separate file.");
+  }
+  if (last > 1)
+  {
+    warnings.push_back("has four axes (" + header.Get("sizes") +
+      ") without 'kinds': the last one is taken for components.");
+  }
+  return sizes.size() - 1;
+}
+
+/// Returns which axes are those of space; what lies along the others are components.
+std::vector<std::size_t> FindDomain(const HeaderText& header,
+  const std::vector<std::int64_t>& sizes, std::vector<std::string>& warnings)
+{
+  const std::size_t axes = sizes.size();
+  std::vector<std::string> kinds = HeaderText::Split(HeaderText::ToLower(header.Get("kinds")));
+  if (kinds.size() != axes)
+  {
+    kinds.assign(axes, "none");
+  }
   const auto directions = ParseNrrdVectors(header, "space directions");
-  std::vector<std::size_t> domain;
+  std::vector<std::optional<bool>> inSpace(axes); // none: nothing is told
   for (std::size_t axis = 0; axis < axes; ++axis)
   {
-    const std::string kind = kinds.size() == axes ? kinds[axis] : "";
-    const bool isKnown = !kind.empty() && kind != "none" && kind != "???";
-    const bool isDomain = isKnown ? kind == "domain" || kind == "space" || kind == "time"
-      : directions.size() == axes ? !directions[axis].empty()
-                                  : axes < 4 || axis > 0;
-    if (isDomain && kind == "time")
+    const std::string& kind = kinds[axis];
+    if (kind == "time")
     {
       header.Refuse("one of its axes is time. Save each time step as a separate file.");
     }
-    if (isDomain)
+    if (kind != "none" && kind != "???")
+    {
+      inSpace[axis] = kind == "domain" || kind == "space";
+    }
+    else if (directions.size() == axes)
+    {
+      inSpace[axis] = !directions[axis].empty();
+    }
+  }
+  const auto known = std::count(inSpace.begin(), inSpace.end(), std::optional<bool>(true));
+  if (axes == 4 && std::count(inSpace.begin(), inSpace.end(), std::nullopt) == 4)
+  {
+    inSpace[GuessComponents(header, sizes, warnings)] = false;
+  }
+  std::vector<std::size_t> domain;
+  for (std::size_t axis = 0; axis < axes; ++axis)
+  {
+    if (inSpace[axis].value_or(known < 3))
     {
       domain.push_back(axis);
     }
@@ -168,7 +214,9 @@ StreamEncoding ParseEncoding(const HeaderText& header)
 std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions& options)
 {
   HeaderText header(path,
-    { "byte skip", "line skip", "data file", "axis mins", "axis maxs", "old min", "old max" });
+    { { "byte skip", "byteskip" }, { "line skip", "lineskip" }, { "data file", "datafile" },
+      { "axis mins", "axismins" }, { "axis maxs", "axismaxs" }, { "old min", "oldmin" },
+      { "old max", "oldmax" }, { "centers", "centerings" } });
   HeaderLines lines(path);
   std::string line;
   lines.Next(line);
@@ -191,7 +239,8 @@ std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions&
   }
   const StreamEncoding encoding = ParseEncoding(header);
   const std::vector<std::int64_t> sizes = header.GetIntegers("sizes");
-  const std::vector<std::size_t> domain = FindDomain(header, sizes.size());
+  BareValues values;
+  const std::vector<std::size_t> domain = FindDomain(header, sizes, values.Warnings);
   const bool hasComponents = domain.size() < sizes.size();
   if (domain.size() < 2 || domain.size() > 3 || sizes.size() > domain.size() + 1)
   {
@@ -206,8 +255,7 @@ std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions&
                   "axes, for example "
                   "with 'unu permute'.");
   }
-  BareValues values;
-  values.Name = header.Get("content").empty() ? "values" : header.Get("content");
+  values.Name = header.Get("content").empty() ? options.GetArrayName(path) : header.Get("content");
   values.Components = !hasComponents ? 1 : isLast ? sizes.back() : sizes.front();
   values.ComponentsApart = hasComponents && isLast;
   values.Samples = bricks::Index3(1);

@@ -46,6 +46,19 @@ public:
     }
   }
 
+  /// Moves the first sample of a coarser level to the mean of the samples of the finest level that it stands for.
+  void MoveToMean(const Placement& finest)
+  {
+    const std::size_t axes = this->CountAxes();
+    for (std::size_t row = 0; row < axes && finest.CountAxes() == axes; ++row)
+    {
+      for (std::size_t column = 0; column < axes; ++column)
+      {
+        this->Offset[row] += 0.5 * (this->Linear[row][column] - finest.Linear[row][column]);
+      }
+    }
+  }
+
   bool HasTranslation() const { return this->IsMoved; }
   std::size_t CountAxes() const { return this->Offset.size(); }
   const Matrix& GetLinear() const { return this->Linear; }
@@ -358,7 +371,17 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
     warnings.push_back(
       "has 'coordinateTransformations' to further coordinate systems, which are not honored.");
   }
-  const Placement placement = Place(folder, scale, dataset, readNumbers);
+  Placement placement = Place(folder, scale, dataset, readNumbers);
+  const auto hasTranslation = [&](const Json& one)
+  {
+    Placement own(folder, readNumbers);
+    own.Apply(ZarrJson::Find(one, "coordinateTransformations"));
+    return own.HasTranslation();
+  };
+  if (readNumbers && level > 0 && std::none_of(datasets.begin(), datasets.end(), hasTranslation))
+  {
+    placement.MoveToMean(Place(folder, scale, datasets.front(), readNumbers));
+  }
   const std::size_t axes = placement.CountAxes();
   if (axes == 0)
   {
@@ -392,19 +415,6 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
   {
     Turn(folder, placement, found);
     return found;
-  }
-  const auto hasTranslation = [&](const Json& one)
-  { return Place(folder, scale, one, readNumbers).HasTranslation(); };
-  if (level > 0 && std::none_of(datasets.begin(), datasets.end(), hasTranslation))
-  {
-    std::vector<std::string> known;
-    const OmeLevel finest = OmeLevel::Find(folder, scale, 0, readNumbers, known);
-    for (std::size_t axis = 0; axis < found.Axes.size() && axis < finest.Axes.size(); ++axis)
-    {
-      AxisNote& note = found.Axes[axis];
-      const bool isTime = note.GetType() == "time" || note.GetType() == "channel";
-      note.Origin += isTime ? 0.0 : 0.5 * (note.Spacing - finest.Axes[axis].Spacing);
-    }
   }
   return found;
 }

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/format/SeriesFile.h"
 
 #include "DSMVolumeFiles/base/FileError.h"
+#include "DSMVolumeFiles/base/SmallFile.h"
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
@@ -41,6 +42,16 @@ std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& option
   return hash.Get();
 }
 
+/// Returns what the names of the files have in common, but for the numbers of the steps.
+std::string NameBySeries(const std::vector<std::string>& paths)
+{
+  const std::string first = GetStem(paths.front());
+  const std::string last = GetStem(paths.back());
+  const auto differ = std::mismatch(first.begin(), first.end(), last.begin(), last.end()).first;
+  const std::size_t end = std::string(first.begin(), differ).find_last_not_of("0123456789._- ");
+  return end == std::string::npos ? first : first.substr(0, end + 1);
+}
+
 class SeriesFile final : public VolumeFile
 {
 public:
@@ -54,6 +65,10 @@ public:
     this->Geometry = first->GetGeometry();
     this->Coordinates = first->GetCoordinates();
     this->Arrays = first->GetArrays();
+    if (this->Arrays.size() == 1 && this->Arrays.front().Name == GetStem(this->Path))
+    {
+      this->Arrays.front().Name = NameBySeries(paths);
+    }
     this->Levels = first->GetLevels();
     this->Warnings = first->GetWarnings();
     this->Steps = static_cast<int>(paths.size());

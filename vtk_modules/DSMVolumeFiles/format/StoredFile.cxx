@@ -80,7 +80,7 @@ void StoredFile::ReadStored(
   const std::optional<Place> place = this->FindChunk(array, step, whole);
   if (!place)
   {
-    FillWith(storage.Fill, out, count * sampleBytes);
+    Repeat(storage.Fill.data(), storage.Fill.size(), out, count * sampleBytes);
     return;
   }
   const bricks::Box stored = this->GetStoredBox(array, whole);
@@ -128,21 +128,6 @@ void StoredFile::ReadStored(
   catch (const dsm::Error& error)
   {
     throw FileError({ place->File->GetPath(), what.Name, whole }, error);
-  }
-}
-
-void StoredFile::FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes)
-{
-  // Each pass copies what is there already, as long as that stays in the processor's cache.
-  constexpr std::size_t most = 1 << 14;
-  std::size_t done = std::min(bytes, fill.size());
-  std::memcpy(out, fill.data(), done);
-  for (std::size_t unit = done; done < bytes;)
-  {
-    const std::size_t more = std::min(unit, bytes - done);
-    std::memcpy(out + done, out, more);
-    done += more;
-    unit = unit < most ? done : unit;
   }
 }
 

@@ -66,8 +66,6 @@ protected:
 private:
   /// As ReadChunk, with numbers as they are stored.
   void ReadStored(std::size_t array, int step, const bricks::Index3& chunk, std::byte* out) const;
-  /// Repeats the bytes of `fill` until `out` has so many bytes.
-  static void FillWith(const std::vector<std::byte>& fill, std::byte* out, std::size_t bytes);
   /// Throws dsm::Error when the stored size of a chunk cannot be right for its `bytes`. Called before memory is
   /// allocated for the chunk.
   void CheckStored(std::size_t array, const Place& place, std::size_t bytes) const;

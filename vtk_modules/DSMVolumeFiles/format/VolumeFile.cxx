@@ -13,6 +13,7 @@
 #endif
 #include "DSMVolumeFiles/format/NamedVectors.h"
 #include "DSMVolumeFiles/format/ZarrFile.h"
+#include "DSMVolumeFiles/format/ZarrGroup.h"
 
 #include <glm/ext/vector_uint3_sized.hpp>
 #include <glm/vector_relational.hpp>
@@ -125,7 +126,7 @@ std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions& 
   }
   BareValues values;
   values.Paths = { path };
-  values.Name = "values";
+  values.Name = all.GetArrayName(path);
   values.Samples = options.Samples;
   values.Type = options.Type;
   values.Components = std::max(1, options.Components);
@@ -179,6 +180,12 @@ std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOption
   {
     throw FileError(path, "is empty.");
   }
+  if (kind == PathKind::File && ReadBeginning(path, 3) == "CDF")
+  {
+    throw FileError(path,
+      "is a netCDF-3 file, which cannot be read. Convert it to netCDF-4: 'nccopy -k nc4 IN.nc "
+      "OUT.nc' (Debian: netcdf-bin).");
+  }
   throw FileError(path,
     "has an unknown format or a damaged header. Supported formats: HDF5, Zarr (a folder), NRRD, "
     "MetaImage (.mhd, .mha) and .raw. For other image formats, open the file in ParaView and use "
@@ -210,6 +217,11 @@ std::shared_ptr<VolumeFile> OpenGuarded(const std::string& path, const OpenOptio
 
 } // namespace
 
+std::string OpenOptions::GetArrayName(const std::string& path) const
+{
+  return this->ArrayName.empty() ? GetStem(path) : this->ArrayName;
+}
+
 VolumeFile::VolumeFile(std::string path)
   : Path(std::move(path))
 {
@@ -235,7 +247,14 @@ void VolumeFile::SetPlace(const OpenOptions& options)
     }
     if (options.Origin)
     {
-      this->Geometry.Origin[axis] = (*options.Origin)[place];
+      const double origin = (*options.Origin)[place];
+      this->Geometry.Origin[axis] = origin;
+      std::vector<double>& positions = this->Coordinates[place];
+      const double first = positions.empty() ? origin : positions.front();
+      for (double& position : positions)
+      {
+        position += origin - first;
+      }
     }
   }
 }
@@ -384,11 +403,12 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
     return array.Name.compare(0, wanted.size(), wanted) == 0 &&
       (array.Name.size() == wanted.size() || isPart);
   };
-  if (!options.Dataset.empty() && !std::all_of(arrays.begin(), arrays.end(), isOfDataset))
+  if (!options.Dataset.empty() && FindZarrFolder(path).empty() &&
+    !std::all_of(arrays.begin(), arrays.end(), isOfDataset))
   {
     throw FileError(path,
       "does not support choosing a dataset ('" + options.Dataset +
-        "'): only HDF5 files other than VTKHDF do. Choose among the file's arrays.");
+        "'): only Zarr and HDF5 files other than VTKHDF do. Choose among the file's arrays.");
   }
   return file;
 }

@@ -192,9 +192,13 @@ struct OpenOptions
 {
   /// Level of detail, for a Zarr group with several scales or a brick file with several levels: 0 is the finest.
   int Level = 0;
-  /// Dataset to read, for an HDF5 file without VTKHDF; empty: the datasets with the largest shape of three axes in
-  /// space.
+  /// Dataset to read, for an HDF5 file without VTKHDF, or a Zarr folder of several; empty: the datasets with the largest
+  /// shape of three axes in space.
   std::string Dataset;
+
+  /// Name for an array that has none in the file; empty: that of the file.
+  std::string ArrayName;
+  std::string GetArrayName(const std::string& path) const;
 
   /// Called now and then by the opening thread while a file is being opened, because an index of many chunks
   /// takes time. If it returns false, opening ends with dsm::Error. May be empty.

@@ -7,8 +7,8 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/OmeScales.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
-#include "DSMVolumeFiles/format/VolumeShape.h"
 #include "DSMVolumeFiles/format/ZarrAxes.h"
+#include "DSMVolumeFiles/format/ZarrGroup.h"
 #include "DSMVolumeFiles/format/ZarrJson.h"
 #include "DSMVolumeFiles/format/ZarrListing.h"
 #include "DSMVolumeFiles/format/ZarrMetadata.h"
@@ -36,59 +36,23 @@ using Json = nlohmann::json;
 /// More than any microscope's.
 constexpr std::int64_t MostChannels = 1000;
 
-/// Opens only what lies in the folder: a name in its metadata may lead elsewhere.
-std::string JoinInside(const std::string& folder, const std::string& name)
-{
-  const std::filesystem::path path(name);
-  const bool leadsUp = std::find(path.begin(), path.end(), "..") != path.end();
-  if (name.empty() || path.is_absolute() || leadsUp || name.find('\0') != std::string::npos)
-  {
-    throw FileError(folder,
-      "has invalid metadata: the path " + Quote(name) +
-        " of a dataset is empty or leads outside the folder.");
-  }
-  return folder + "/" + name;
-}
-
-/// Lists the entries of a folder. Throws dsm::Error if the system cannot determine their kind.
-std::vector<std::filesystem::path> FindFolders(const std::string& path)
-{
-  std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::directory_iterator(path))
-  {
-    if (FindPathKind(entry.path().string()) == PathKind::Directory)
-    {
-      found.push_back(entry.path());
-    }
-  }
-  return found;
-}
-
 class ZarrFile final : public StoredFile
 {
 public:
   ZarrFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
+    , Folder(path)
+    , Name(options.Dataset.empty() ? options.GetArrayName(path) : options.Dataset)
     , IsPlaced(!options.HasSpacing())
   {
-    const Json attributes = ReadZarrAttributes(path);
-    const Json& named = ZarrJson::Find(attributes, "ome");
-    const Json& ome = named.is_null() ? attributes : named;
-    const Json& scales = ZarrJson::Find(ome, "multiscales");
     try
     {
-      if (scales.is_array() && !scales.empty())
-      {
-        this->OpenScale(scales[0], ome, options.Level);
-      }
-      else
-      {
-        this->OpenArrays();
-      }
+      this->Open(options.Dataset, options.Level);
     }
     catch (const Json::exception&)
     {
-      throw FileError(path, "has invalid metadata: a member of 'multiscales' has a wrong type.");
+      throw FileError(
+        this->Folder, "has invalid metadata: a member of 'multiscales' has a wrong type.");
     }
     this->Stamp = this->MakeStamp();
   }
@@ -229,23 +193,73 @@ private:
     return hash.Get();
   }
 
+  /// Opens what is in the folder. `wanted`: which one of several; empty: the only one, or an image's first.
+  void Open(const std::string& wanted, int level)
+  {
+    const Json attributes = ReadZarrAttributes(this->Folder);
+    const Json& ome = ZarrGroup::FindOme(attributes);
+    const Json& scales = ZarrJson::Find(ome, "multiscales");
+    const bool isImage = scales.is_array() && !scales.empty();
+    std::vector<std::string> names;
+    if (isImage && (scales.size() > 1 || !wanted.empty()))
+    {
+      names = ZarrGroup::NameScales(this->Folder, scales);
+    }
+    const auto named = std::find(names.begin(), names.end(), wanted);
+    if (!wanted.empty() && named == names.end())
+    {
+      this->OpenInner(wanted, names, level);
+    }
+    else if (isImage)
+    {
+      if (wanted.empty() && names.size() > 1)
+      {
+        this->Warnings.push_back("has " + std::to_string(names.size()) +
+          " images in its 'multiscales', of which the first one is shown. Enter another one as "
+          "Dataset: " +
+          ListNames(names));
+      }
+      const auto number = static_cast<std::size_t>(named - names.begin());
+      this->OpenScale(scales[wanted.empty() ? 0 : number], ome, level);
+    }
+    else
+    {
+      this->OpenArrays(level);
+    }
+  }
+
+  /// Opens an array or a group in the folder. `names`: of what else can be chosen.
+  void OpenInner(const std::string& inner, std::vector<std::string> names, int level)
+  {
+    const std::string folder = ZarrGroup::JoinInside(this->Folder, inner);
+    if (!MayBeZarr(folder))
+    {
+      const std::vector<std::string> more = ZarrGroup::FindInner(this->Folder);
+      names.insert(names.end(), more.begin(), more.end());
+      throw FileError(
+        this->Folder, "has no dataset " + Quote(inner) + ". Valid datasets: " + ListNames(names));
+    }
+    this->Folder = folder;
+    this->Open({}, level);
+  }
+
   void OpenScale(const Json& scale, const Json& ome, int level)
   {
-    const Json& datasets = ZarrJson::GetArray(this->Path, scale, "datasets");
-    CheckLimit(this->Path, "levels of detail", datasets.size(), FileLimits::Levels);
+    const Json& datasets = ZarrJson::GetArray(this->Folder, scale, "datasets");
+    CheckLimit(this->Folder, "levels of detail", datasets.size(), FileLimits::Levels);
     this->Levels = static_cast<int>(datasets.size());
     if (level < 0 || level >= this->Levels)
     {
-      throw FileError(this->Path,
+      throw FileError(this->Folder,
         "has no level " + std::to_string(level) +
           (this->Levels > 0 ? "; valid levels are 0 to " + std::to_string(this->Levels - 1) : "") +
           ".");
     }
     const auto readNumbers = [this](const std::string& name)
-    { return ReadZarrVector(JoinInside(this->Path, name), FileLimits::Axes); };
-    OmeLevel found = OmeLevel::Find(this->Path, scale, static_cast<std::size_t>(level),
+    { return ReadZarrVector(ZarrGroup::JoinInside(this->Folder, name), FileLimits::Axes); };
+    OmeLevel found = OmeLevel::Find(this->Folder, scale, static_cast<std::size_t>(level),
       this->IsPlaced ? readNumbers : OmeLevel::ReadNumbers(), this->Warnings);
-    const std::string folder = JoinInside(this->Path, found.Array);
+    const std::string folder = ZarrGroup::JoinInside(this->Folder, found.Array);
     const auto data = Read(folder);
     if (!found.Axes.empty() && found.Axes.size() != data->Shape.size())
     {
@@ -257,8 +271,9 @@ private:
     if (level > 0 && this->IsPlaced && !HasTransformations(scale))
     {
       found.Axes.resize(data->Shape.size());
-      const std::string finest = ZarrJson::GetText(this->Path, datasets.front(), "path");
-      PlaceInFinest(Read(JoinInside(this->Path, finest))->Shape, data->Shape, axes, found.Axes);
+      const std::string finest = ZarrJson::GetText(this->Folder, datasets.front(), "path");
+      PlaceInFinest(
+        Read(ZarrGroup::JoinInside(this->Folder, finest))->Shape, data->Shape, axes, found.Axes);
     }
     this->PlaceBy(found.Axes, axes, data->Shape);
     this->TimeBy(found.Axes, axes, data->Shape);
@@ -271,10 +286,10 @@ private:
     {
       const auto number = static_cast<std::size_t>(channel);
       const std::string label = channels.is_array() && number < channels.size()
-        ? ZarrJson::GetText(this->Path, channels[number], "label")
+        ? ZarrJson::GetText(this->Folder, channels[number], "label")
         : std::string();
       return !label.empty() ? label
-        : count == 1        ? std::string("values")
+        : count == 1        ? this->Name
                             : "channel " + std::to_string(channel);
     };
     this->Add(folder, data, axes, getName);
@@ -315,7 +330,7 @@ private:
     {
       inSpace[static_cast<std::size_t>(axis)] = &notes[axes.FindInSpace(shape.size(), axis)];
     }
-    PlaceAxes(this->Path, inSpace, this->Geometry, this->Coordinates, this->Warnings);
+    PlaceAxes(this->Folder, inSpace, this->Geometry, this->Coordinates, this->Warnings);
   }
 
   /// Likewise, by the first array with a time axis.
@@ -330,8 +345,8 @@ private:
     }
   }
 
-  /// The path is an array, or a group of arrays.
-  void OpenArrays()
+  /// The folder is an array, or a group of arrays; else the first of such or of images in it is opened.
+  void OpenArrays(int level)
   {
     const auto addAs = [this](const std::string& folder, const std::string& name)
     {
@@ -352,58 +367,35 @@ private:
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
-    if (ReadZarrMetadata(this->Path))
+    if (ReadZarrMetadata(this->Folder))
     {
-      const std::string name = std::filesystem::path(this->Path).stem().string();
-      addAs(this->Path, name.empty() ? "values" : name);
+      addAs(this->Folder, this->Name);
       return;
     }
-    std::map<std::string, VolumeShape> found;
-    VolumeShape largest;
-    // Beside a volume there may be what is none, such as texts.
     std::string refused;
-    const auto tryToRead = [&](const std::string& folder) -> std::optional<VolumeShape>
+    const std::vector<std::string> names = ZarrGroup::FindArrays(this->Folder, refused);
+    const std::vector<std::string> inner = ZarrGroup::FindInner(this->Folder);
+    if (names.empty() && inner.empty())
     {
-      try
-      {
-        const std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
-        if (!data || !data->IsVolume())
-        {
-          return std::nullopt;
-        }
-        const ZarrAxes axes =
-          ZarrAxes::Find(folder, NameZarrAxes(folder, *data), data->Shape.size());
-        return VolumeShape{ axes.GetSpace(data->Shape),
-          axes.Time < 0 ? 0 : data->Shape[static_cast<std::size_t>(axes.Time)] };
-      }
-      catch (const dsm::Error& error)
-      {
-        refused = error.what();
-        return std::nullopt;
-      }
-    };
-    for (const std::filesystem::path& folder : FindFolders(this->Path))
-    {
-      const auto shape = tryToRead(folder.string());
-      if (shape)
-      {
-        found[folder.filename().string()] = *shape;
-        largest = shape->IsLargerThan(largest) ? *shape : largest;
-      }
+      throw FileError(this->Folder,
+        "has no Zarr array with three axes." + (refused.empty() ? std::string() : " " + refused));
     }
-    if (found.empty())
+    if (inner.size() > (names.empty() ? 1 : 0))
     {
-      const std::string inner = this->FindInnerGroup();
-      throw FileError(this->Path,
-        "has no Zarr array with three axes." + (refused.empty() ? "" : " " + refused) +
-          (inner.empty() ? "" : " The folder '" + inner + "' may have one; open it."));
+      const std::string shown = names.empty()
+        ? "several images or groups of arrays, of which " + Quote(inner.front()) + " is shown"
+        : "images or groups of arrays beside those that are shown";
+      this->Warnings.push_back(
+        "has " + shown + ". Enter another one as Dataset: " + ListNames(inner));
     }
-    for (const auto& [name, shape] : found)
+    if (names.empty())
     {
-      if (shape.BelongsTo(largest))
-      {
-        addAs(this->Path + "/" + name, name);
-      }
+      this->OpenInner(inner.front(), {}, level);
+      return;
+    }
+    for (const std::string& name : names)
+    {
+      addAs(this->Folder + "/" + name, name);
     }
   }
 
@@ -488,7 +480,7 @@ private:
     CheckLimit(folder, "time steps", static_cast<std::uint64_t>(times), FileLimits::Steps);
     CheckLimit(folder, "components", static_cast<std::uint64_t>(axes.GetComponents(data->Shape)),
       FileLimits::Components);
-    CheckLimit(this->Path, "arrays", this->Arrays.size() + static_cast<std::size_t>(channels),
+    CheckLimit(this->Folder, "arrays", this->Arrays.size() + static_cast<std::size_t>(channels),
       FileLimits::Arrays);
     this->Steps = std::max(this->Steps, static_cast<int>(times));
     this->Geometry.Points = axes.GetSpace(data->Shape);
@@ -559,19 +551,6 @@ private:
     return unique;
   }
 
-  /// Returns an inner folder with groups of arrays, or images.
-  std::string FindInnerGroup() const
-  {
-    for (const std::filesystem::path& folder : FindFolders(this->Path))
-    {
-      if (MayBeZarr(folder.string()))
-      {
-        return folder.string();
-      }
-    }
-    return {};
-  }
-
   static std::string GetKey(const ZarrMetadata& data, const Index& index)
   {
     std::string key = data.Prefix;
@@ -632,6 +611,8 @@ private:
     return place;
   }
 
+  std::string Folder;                                           ///< with what is shown
+  std::string Name;                                             ///< of an array without one
   bool IsPlaced;                                                ///< by what it says
   std::vector<Source> Sources;                                  ///< one for each array
   std::map<std::string, std::unique_ptr<ZarrListing>> Listings; ///< by folder
@@ -644,17 +625,6 @@ private:
 std::shared_ptr<VolumeFile> OpenZarr(const std::string& path, const OpenOptions& options)
 {
   return std::make_shared<ZarrFile>(path, options);
-}
-
-bool MayBeZarr(const std::string& path)
-{
-  const auto names = { "/.zarray", "/.zgroup", "/zarr.json" };
-  return std::any_of(names.begin(), names.end(),
-    [&](const char* name)
-    {
-      std::error_code failure;
-      return std::filesystem::exists(path + name, failure);
-    });
 }
 
 } // namespace vol

@@ -284,6 +284,8 @@ vol::OpenOptions vtkDSMVolumeReader::GetOptions() const
   vol::OpenOptions options;
   options.Level = this->Level;
   options.Dataset = this->DatasetName;
+  // The name of such arrays in states of version 0.1.
+  options.ArrayName = this->PointArrays->ArrayExists("values") ? "values" : "";
   const auto sample =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(this->RawScalarType));
   options.Bare.Samples = { this->RawDimensions[0], this->RawDimensions[1], this->RawDimensions[2] };
