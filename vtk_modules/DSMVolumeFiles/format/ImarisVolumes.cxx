@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -117,7 +118,7 @@ void Place(hid_t file, const HdfHandle& image, int level, HdfVolume& volume)
       note.Origin = *least + 0.5 * note.Spacing;
     }
   }
-  volume.Notes = std::move(notes);
+  volume.Notes = std::make_shared<const AxisNotes>(std::move(notes));
   if (samples != volume.Axes.Samples && CanCut(file, volume, samples))
   {
     volume.Axes.Samples = samples;
