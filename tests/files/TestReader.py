@@ -288,6 +288,15 @@ if get_ranks() == 1:
     check("manifest.json" in messages.text and "unknown format" in messages.text, "an error names the file")
 image = simple.DSMVolumeReader(FileName=os.path.join(FILES, "image.vtkhdf"))
 check(list(image.GetProperty("PointArrays").GetAvailable()) == ["f", "v"], "the panel lists the point arrays")
+kinds = simple.DSMVolumeReader(FileName=os.path.join(FILES, "kinds.h5"))
+kinds.UpdatePipeline()
+offered = [*kinds.GetProperty("PointArrays").GetAvailable()]
+check(offered[-2:] == ["E", "v"] and "E" not in kinds.PointData.keys() and "E/x" in kinds.PointData.keys(),
+      f"vectors of named components are offered: {offered}")
+kinds.PointArrays = ["E"]
+kinds.UpdatePipeline()
+check(kinds.PointData["E"].GetNumberOfComponents() == 3 and kinds.PointData["E"].GetRange(-1)[0] == 5**0.5, "and read where they are chosen")
+simple.Delete(kinds)
 check(list(image.GetProperty("CellArrays").GetAvailable()) == ["c"], "and the cell arrays")
 image.UpdatePipeline()
 check(image.PointData.keys() == ["f", "v"] and image.CellData.keys() == ["c"], "all of them are chosen at first")
