@@ -27,8 +27,8 @@ herr_t KeepBytes(hid_t, hid_t, H5T_cdata_t* data, size_t, size_t, size_t, void*,
   return 0;
 }
 
-/// Has the library give the elements themselves, instead of what they refer to: lengths, addresses and indices. None where
-/// it does not.
+/// Has the library give the elements themselves, instead of what they refer to: lengths, addresses
+/// and indices. None where it does not.
 std::vector<std::byte> ReadElements(hid_t attribute, std::size_t count, std::size_t bytes)
 {
   const HdfHandle opaque(H5Tcreate(H5T_OPAQUE, bytes), &H5Tclose);

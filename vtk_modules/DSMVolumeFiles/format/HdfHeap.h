@@ -9,10 +9,11 @@
 namespace vol
 {
 
-/// Throws dsm::Error, which names file, object and attribute, where the global heap does not have the texts, or the lists of
-/// references, of an attribute whose elements are of variable length ("HDF5 File Format Specification", III.E). The library
-/// (1.10) follows the sizes in a damaged heap beyond its memory, or without an end. To be called before it reads the attribute.
-/// `count`: elements. Under the lock.
+/// Throws dsm::Error, which names file, object and attribute, where the global heap does not have
+/// the texts, or the lists of references, of an attribute whose elements are of variable length
+/// ("HDF5 File Format Specification", III.E). The library (1.10) follows the sizes in a damaged
+/// heap beyond its memory, or without an end. To be called before it reads the attribute. `count`:
+/// elements. Under the lock.
 void CheckHdfHeap(hid_t attribute, std::size_t count);
 
 } // namespace vol

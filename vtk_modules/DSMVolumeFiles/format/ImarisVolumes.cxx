@@ -71,7 +71,8 @@ struct DataPlace
   }
 };
 
-/// Returns whether the chunks of a dataset stay numbered as they are when it is cut to so many samples.
+/// Returns whether the chunks of a dataset stay numbered as they are when it is cut to so many
+/// samples.
 bool CanCut(hid_t file, const HdfVolume& volume, const bricks::Index3& samples)
 {
   const HdfHandle dataset = OpenHdfDataset(file, volume.Name);

@@ -47,8 +47,8 @@ bricks::ScalarType ParseType(const HeaderText& header)
   return known->second;
 }
 
-/// Returns which of four axes has the components, where the header says nothing of them: the first one, as is usual, or else
-/// the last one, if that alone is short enough.
+/// Returns which of four axes has the components, where the header says nothing of them: the first
+/// one, as is usual, or else the last one, if that alone is short enough.
 std::size_t GuessComponents(const HeaderText& header, const std::vector<std::int64_t>& sizes,
   std::vector<std::string>& warnings)
 {

@@ -46,7 +46,8 @@ public:
     }
   }
 
-  /// Moves the first sample of a coarser level to the mean of the samples of the finest level that it stands for.
+  /// Moves the first sample of a coarser level to the mean of the samples of the finest level that
+  /// it stands for.
   void MoveToMean(const Placement& finest)
   {
     const std::size_t axes = this->CountAxes();

@@ -192,8 +192,8 @@ struct OpenOptions
 {
   /// Level of detail, for a Zarr group with several scales or a brick file with several levels: 0 is the finest.
   int Level = 0;
-  /// Dataset to read, for an HDF5 file without VTKHDF, or a Zarr folder of several; empty: the datasets with the largest
-  /// shape of three axes in space.
+  /// Dataset to read, for an HDF5 file without VTKHDF, or a Zarr folder of several; empty: the
+  /// datasets with the largest shape of three axes in space.
   std::string Dataset;
 
   /// Name for an array that has none in the file; empty: that of the file.

@@ -193,7 +193,8 @@ private:
     return hash.Get();
   }
 
-  /// Opens what is in the folder. `wanted`: which one of several; empty: the only one, or an image's first.
+  /// Opens what is in the folder. `wanted`: which one of several; empty: the only one, or an
+  /// image's first.
   void Open(const std::string& wanted, int level)
   {
     const Json attributes = ReadZarrAttributes(this->Folder);
@@ -345,7 +346,8 @@ private:
     }
   }
 
-  /// The folder is an array, or a group of arrays; else the first of such or of images in it is opened.
+  /// The folder is an array, or a group of arrays; else the first of such or of images in it is
+  /// opened.
   void OpenArrays(int level)
   {
     const auto addAs = [this](const std::string& folder, const std::string& name)

@@ -10,11 +10,12 @@
 namespace vol
 {
 
-/// Zarr, versions 2 and 3 (with sharding): one array, a group of arrays of one shape, or an OME-Zarr image
-/// (https://ngff.openmicroscopy.org), of whose scales one is taken, with its channels as arrays and its times
-/// as steps. `path` is a folder, which has one of these, or, where options.Dataset is a path in it or the name of one of an
-/// image's "multiscales", several. ZarrAxes tells what the axes are. `options`: Level counts, too, and HasSpacing, as then
-/// nothing is read of where the samples lie. Throws dsm::Error.
+/// Zarr, versions 2 and 3 (with sharding): one array, a group of arrays of one shape, or an
+/// OME-Zarr image (https://ngff.openmicroscopy.org), of whose scales one is taken, with its
+/// channels as arrays and its times as steps. `path` is a folder, which has one of these, or, where
+/// options.Dataset is a path in it or the name of one of an image's "multiscales", several.
+/// ZarrAxes tells what the axes are. `options`: Level counts, too, and HasSpacing, as then nothing
+/// is read of where the samples lie. Throws dsm::Error.
 std::shared_ptr<VolumeFile> OpenZarr(const std::string& path, const OpenOptions& options);
 
 } // namespace vol
