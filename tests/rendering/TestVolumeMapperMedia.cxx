@@ -543,7 +543,33 @@ TEST_F(VolumeMapperOfFunctions, TheMeanOfASingleValueIsThatOfTheRayCastMapper)
     this->Window->GetPixelData(
       0, 0, Size - 1, Size - 1, 0, pictures[mapper == theirs.Get() ? 0 : 1]);
   }
-  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 0.5);
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 1.5);
+}
+
+TEST_F(VolumeMapperOfFunctions, WhereOnlyTheColorIsNotANumberItIsTheMapsColorForThat)
+{
+  this->SetNodes({ { 0.0, 1.0, 0.3 }, { 0.5, 1.0, 0.3 }, { 1.0, 0.0, 0.3 } });
+  this->Colors->SetNanColor(0.0, 1.0, 0.3);
+  this->Property->SetScalarOpacityUnitDistance(4.0);
+  this->Mapper->SetOpacityArray("density");
+  std::vector<vtkSmartPointer<vtkUnsignedCharArray>> pictures;
+  for (const double value : { 1.0, std::nan("") })
+  {
+    const auto image = MakeBall();
+    vtkDataArray* const values = image->GetPointData()->GetScalars();
+    vtkNew<vtkDoubleArray> density;
+    density->SetName("density");
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      values->SetTuple1(point, image->GetPoint(point)[1] > 0.0 ? value : 0.5);
+      density->InsertNextValue(0.5);
+    }
+    image->GetPointData()->AddArray(density);
+    pictures.push_back(this->DrawAll(image)[0]);
+  }
+  this->Mapper->SetOpacityArray("");
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 2.0);
+  EXPECT_GT(pictures[1]->GetRange(1)[1], 100.0) << "green is seen";
 }
 
 TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)

@@ -3,6 +3,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace SceneParts;
 
 namespace
@@ -40,6 +43,26 @@ void AddTypes(Scenes& scenes)
   }
 }
 
+/// All of the recipe's values are in one or two even bins, which have two steps and a peak.
+rt::LatticeMedium CreateDivided(SceneStage& stage, const Recipe& recipe)
+{
+  const double low = Generated::Scale(recipe.Type, 35.0);
+  const double high = Generated::Scale(recipe.Type, 65.0);
+  const double middle = 0.5 * (low + high);
+  const double width = 0.02 * (high - low);
+  const auto look = [=](double value)
+  {
+    const double part = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    const double peak = std::max(0.0, 1.0 - std::abs(value - middle) / width);
+    return glm::dvec4(0.9, part, 1.0 - part, value < low || value > high ? 0.0 : 1.0 + 40.0 * peak);
+  };
+  rt::LatticeMedium medium = stage.CreateMedium(recipe, Fog);
+  const double far = 1e5 * (high - low);
+  medium.Function = rt::TransferFunction::Create(
+    low - far, high + far, look, { low, middle - width, middle, middle + width, high }, 0.0, 0.0);
+  return medium;
+}
+
 void AddShapes(Scenes& scenes)
 {
   Recipe waves;
@@ -61,6 +84,8 @@ void AddShapes(Scenes& scenes)
         [recipe = recipe, nodes = nodes](SceneStage& stage)
         { stage.Add(stage.CreateMedium(recipe, nodes)); } });
     }
+    scenes.push_back({ "medium." + name + ".Divided",
+      [recipe = recipe](SceneStage& stage) { stage.Add(CreateDivided(stage, recipe)); } });
   }
   for (const auto& [name, camera] : Cameras)
   {

@@ -235,7 +235,7 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(
   {
     map.SetOpaque();
   }
-  map.NotANumber = glm::vec4(0.0f);
+  map.NotANumber.w = 0.0f;
   return map;
 }
 

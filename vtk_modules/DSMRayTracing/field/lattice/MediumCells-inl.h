@@ -373,7 +373,6 @@ private:
     Lanes amounts[Width];
     HWY_ALIGN double depths[Width];
     hn::Store(hn::Zero(tag), tag, depths);
-    std::uint32_t some = 0;
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
@@ -383,17 +382,17 @@ private:
       (growth * Row(factors[lane])).Store(amounts[lane]);
       integral.Store(pieces.Integral[lane]);
       depths[lane] = amounts[lane].High[1];
-      some |= std::uint32_t{ !(depths[lane] <= 0.0) } << lane;
     }
+    Vector depth = hn::Load(tag, depths);
+    std::uint32_t some = GetMaskBits(tag, hn::Not(hn::Le(depth, hn::Zero(tag))));
     if (some == 0)
     {
       return 0;
     }
-    Vector depth = hn::Load(tag, depths);
     const std::uint32_t divided = GetMaskBits(tag, hn::IsNaN(depth));
     if (HWY_UNLIKELY(divided != 0))
     {
-      for (std::uint32_t left = divided & some; left != 0; left &= left - 1)
+      for (std::uint32_t left = divided; left != 0; left &= left - 1)
       {
         const int lane = __builtin_ctz(left);
         const bool isShort = (shortOnes >> lane & 1) != 0;
