@@ -2,6 +2,7 @@
 #include "vtkSMDSMVolumeRepresentationProxy.h"
 
 #include "vtkPVDSMNoUndo.h"
+#include "vtkSMDSMSliceIndexDomain.h"
 
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
@@ -21,6 +22,9 @@ vtkSMDSMVolumeRepresentationProxy::~vtkSMDSMVolumeRepresentationProxy() = defaul
 
 namespace
 {
+
+constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
+constexpr const char* MoreSlices[] = { "DSMSliceXIndices", "DSMSliceYIndices", "DSMSliceZIndices" };
 
 /// ParaView's definition lets the panel show the property for Volume alone, by a hint that is the same for all datasets.
 void ShowForVolumes(vtkSMProperty* property)
@@ -75,15 +79,13 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);
   auto* const display = vtkSMPVRepresentationProxy::SafeDownCast(this->GetParentProxy());
-  const bool isOfSlices = this->GetXMLName() == std::string("DSMSliceRepresentation");
-  const std::string type = isOfSlices ? "DSM Slices" : "DSM Volume";
-  if (!display || vtkSMPropertyHelper(display, "Representation").GetAsString() != type)
+  if (!this->IsShown(display))
   {
     return;
   }
-  if (isOfSlices)
+  if (this->IsOfSlices())
   {
-    this->ChooseSlices();
+    this->ChooseSlices(display);
   }
   if (!this->HasChosen)
   {
@@ -91,17 +93,54 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   }
 }
 
-void vtkSMDSMVolumeRepresentationProxy::ChooseSlices()
+bool vtkSMDSMVolumeRepresentationProxy::IsOfSlices()
+{
+  return this->GetXMLName() == std::string("DSMSliceRepresentation");
+}
+
+bool vtkSMDSMVolumeRepresentationProxy::IsShown(vtkSMProxy* display)
+{
+  const std::string type = this->IsOfSlices() ? "DSM Slices" : "DSM Volume";
+  return display && vtkSMPropertyHelper(display, "Representation").GetAsString() == type;
+}
+
+void vtkSMDSMVolumeRepresentationProxy::ChooseSlices(vtkSMProxy* display)
 {
   const vtkPVDSMNoUndo noUndo;
-  for (const char* name : { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" })
+  for (const char* name : SliceIndices)
   {
-    if (vtkSMPropertyHelper(this, name).GetAsInt() < 0)
+    vtkSMProperty* const property = display->GetProperty(name);
+    if (property->FindDomain<vtkSMDSMSliceIndexDomain>()->IsAutomatic() &&
+      !property->ResetToDomainDefaults())
     {
-      this->GetProperty(name)->ResetToDomainDefaults();
+      vtkSMPropertyHelper(property).Set(-1); // the middle, which the frame finds out
     }
   }
-  this->UpdateVTKObjects();
+  display->UpdateVTKObjects();
+}
+
+void vtkSMDSMVolumeRepresentationProxy::TakeSlices()
+{
+  vtkSMProxy* const display = this->GetParentProxy();
+  vtkSMProperty* const points = this->GetProperty("DSMSlicePoints");
+  if (!this->IsOfSlices() || !this->IsShown(display))
+  {
+    return;
+  }
+  points->GetParent()->UpdatePropertyInformation(points);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const int count = vtkSMPropertyHelper(points).GetAsInt(axis);
+    for (const char* name : { SliceIndices[axis], MoreSlices[axis] })
+    {
+      vtkSMProperty* const property = display->GetProperty(name);
+      if (count > 0)
+      {
+        property->FindDomain<vtkSMDSMSliceIndexDomain>()->SetNumberOfSamples(count);
+      }
+    }
+  }
+  this->ChooseSlices(display);
 }
 
 /// The first one of points, or else of cells.

@@ -5,7 +5,7 @@
  *
  * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where there is
  * none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so that the user can
- * choose none. Slices begin in the middle of the data, also of those that come after their display. The panel shows what
+ * choose none. Slices are in the middle of the data until the user places them. The panel shows what
  * shades a volume and sets its density without the gear button.
  *
  * The name is what ParaView makes of the element DSMVolumeRepresentationProxy.
@@ -26,6 +26,11 @@ public:
   static vtkSMDSMVolumeRepresentationProxy* New();
   vtkTypeMacro(vtkSMDSMVolumeRepresentationProxy, vtkSMRepresentationProxy);
 
+  /**
+   * After a render: slices that follow the data get the indices that were shown.
+   */
+  void TakeSlices();
+
 protected:
   vtkSMDSMVolumeRepresentationProxy();
   ~vtkSMDSMVolumeRepresentationProxy() override;
@@ -38,7 +43,9 @@ private:
   void operator=(const vtkSMDSMVolumeRepresentationProxy&) = delete;
 
   void ChooseArray(vtkSMPVRepresentationProxy* display);
-  void ChooseSlices();
+  void ChooseSlices(vtkSMProxy* display);
+  bool IsOfSlices();
+  bool IsShown(vtkSMProxy* display);
 
   bool HasChosen = false; ///< an array
 };
