@@ -36,7 +36,7 @@ for name, path in (("Coarse", "/Root/Level0"), ("Fine", "/Root/Level1")):
     chosen[name] = render(view, f"Pulse{name}")
 for name, pixels in chosen.items():
     part = get_covered(pixels).sum() / get_covered(several).sum()
-    check(0.9 < part < 1.0 and (pixels != several).any(), f"Pulse: {name} levels alone: {part} of all")
+    check(0.85 < part < 1.0 and (pixels != several).any(), f"Pulse: {name} levels alone: {part} of all")
 check((chosen["Coarse"] != chosen["Fine"]).any(), "Pulse: levels differ")
 display.BlockSelectors = ["/"]
 display.BlockColors = ["/Root", "1", "0", "0"]
@@ -49,6 +49,42 @@ with Messages() as messages:
 colored = render(view, "PulseColors")
 check(not messages.text.strip(), f"Pulse: colors without a message: {messages.text.strip()}")
 check((colored != several).any(), "Pulse: colors by another array")
+
+# Slices are in the middle of all levels, whatever the ghost cells, until they are placed.
+INDICES = [f"DSMSlice{axis}Index" for axis in "XYZ"]
+
+
+def check_slices(name, expected):
+    with Messages() as messages:
+        render(view)
+    pixels = render(view, name)
+    indices = [display.GetPropertyValue(index) for index in INDICES]
+    check(indices == expected and not messages.text.strip(), f"{name}: slices {indices}: {messages.text.strip()}")
+    return pixels
+
+
+display.Representation = "DSM Slices"
+check_slices("PulseSlices", [2, 2, 2])
+simple.Hide(pulse, view)
+if get_ranks() == 1:  # with several, ParaView's source crashes
+    fractal = simple.HierarchicalFractal(TwoDimensional=0, MaximumLevel=2, GhostLevels=0)
+    display = simple.Show(fractal, view)
+    display.Representation = "DSM Slices"
+    simple.ColorBy(display, ("CELLS", "TestX"))
+    check_slices("Slices", [5, 5, 5])
+    place_camera(view)
+    without = check_slices("Slices", [5, 5, 5])
+    fractal.GhostLevels = 1
+    ghosts = check_slices("SlicesOfGhosts", [5, 5, 5])  # the source's values are other ones
+    check_equal(get_covered(ghosts) * 255, get_covered(without) * 255, "slices are where they are without ghost cells")
+    ranges = [display.GetProperty(index).GetDomain("range").GetMaximum(0) for index in INDICES]
+    check(ranges == [10] * 3, f"slices to {ranges}")
+    fractal.Dimensions = 14
+    check_slices("SlicesOfOther", [7, 7, 7])
+    display.DSMSliceXIndex = 3
+    fractal.Dimensions = 10
+    check_slices("SlicesPlaced", [3, 5, 5])
+    simple.Delete(fractal)
 
 trees = simple.HyperTreeGridRandom()
 show_levels(trees, "Trees", is_recorded=False)  # its values depend on the number of ranks

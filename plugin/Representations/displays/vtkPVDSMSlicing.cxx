@@ -12,7 +12,7 @@ void vtkPVDSMSlicing::ApplyTo(vtkDSMVolumeMapper* mapper) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const Axis& slices = this->Axes[axis];
-    if (slices.IsShown && slices.Index >= 0)
+    if (slices.IsShown)
     {
       mapper->AddSlice(axis, slices.Index);
     }

@@ -14,8 +14,7 @@ public:
   struct Axis
   {
     bool IsShown = true;
-    /// Index of the slice among the samples along the axis, from 0; negative: unknown yet, no slice
-    /// is shown.
+    /// Index of the slice among the samples along the axis, from 0; negative: the middle one.
     int Index = -1;
     std::vector<int> Further; ///< further indices, shown in any case
   };

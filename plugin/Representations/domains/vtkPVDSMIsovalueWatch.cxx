@@ -4,6 +4,7 @@
 #include "vtkPVDSMNoUndo.h"
 #include "vtkSMDSMImageRepresentationProxy.h"
 #include "vtkSMDSMIsovalueDomain.h"
+#include "vtkSMDSMVolumeRepresentationProxy.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkClientServerStream.h"
@@ -92,6 +93,12 @@ vtkPVDSMIsovalueWatch::~vtkPVDSMIsovalueWatch()
 
 void vtkPVDSMIsovalueWatch::TakeSuggestion(vtkSMProxy* representation)
 {
+  vtkSMProperty* const ofSlices = representation->GetProperty(OfSlices);
+  if (auto* const slices =
+        vtkSMDSMVolumeRepresentationProxy::SafeDownCast(ofSlices ? ofSlices->GetParent() : nullptr))
+  {
+    slices->TakeSlices();
+  }
   vtkSMDSMImageRepresentationProxy* const volume = FindVolume(representation);
   if (!volume || !volume->ShowsIsosurfaces())
   {

@@ -20,8 +20,7 @@ namespace
 constexpr const char* Box = "DSMCroppingBox";
 constexpr const char* Movements[] = { "DSMCroppingPosition", "DSMCroppingRotation",
   "DSMCroppingScale" };
-constexpr const char* Places[] = { "DSMClipOrigin", Box, "DSMSliceOrigin", "DSMSliceXIndex",
-  "DSMSliceYIndex", "DSMSliceZIndex" };
+constexpr const char* Places[] = { "DSMClipOrigin", Box, "DSMSliceOrigin" };
 
 /// What the data give; empty where they give nothing.
 std::vector<double> FindDefault(vtkSMVectorProperty* property)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMDSMSliceIndexDomain.h"
 
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMProperty.h"
@@ -21,7 +24,10 @@ int vtkSMDSMSliceIndexDomain::ReadXMLAttributes(vtkSMProperty* property, vtkPVXM
 void vtkSMDSMSliceIndexDomain::Update(vtkSMProperty*)
 {
   vtkPVDataInformation* const data = this->GetInputDataInformation("Input");
-  const int* const extent = data ? data->GetExtent() : nullptr;
+  const bool isImage = data && !data->IsCompositeDataSet() &&
+    !data->GetArrayInformation(
+      vtkDataSetAttributes::GhostArrayName(), vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  const int* const extent = isImage ? data->GetExtent() : nullptr;
   std::vector<vtkEntry> entries;
   if (extent && extent[2 * this->Axis] <= extent[2 * this->Axis + 1])
   {
@@ -39,5 +45,17 @@ int vtkSMDSMSliceIndexDomain::SetDefaultValues(vtkSMProperty* property, bool use
   vtkSMPropertyHelper helper(property);
   helper.SetUseUnchecked(useUncheckedValues);
   helper.Set(this->GetMaximum(0) / 2);
+  this->Default = useUncheckedValues ? this->Default : this->GetMaximum(0) / 2;
   return 1;
+}
+
+void vtkSMDSMSliceIndexDomain::SetNumberOfSamples(int count)
+{
+  this->SetEntries({ vtkEntry(0, count - 1) });
+}
+
+bool vtkSMDSMSliceIndexDomain::IsAutomatic()
+{
+  const int index = vtkSMPropertyHelper(this->GetProperty()).GetAsInt();
+  return index < 0 || index == this->Default;
 }

@@ -4,6 +4,7 @@
 #include "vtkPVDSMHints.h"
 #include "vtkPVDSMNoUndo.h"
 #include "vtkSMDSMRepresentationProxy.h"
+#include "vtkSMDSMSliceIndexDomain.h"
 
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
@@ -55,6 +56,8 @@ vtkSmartPointer<vtkPVXMLElement> MakeEither(const std::vector<std::string>& hint
   }
   return MakeHint(text + "</Expression></PropertyWidgetDecorator>");
 }
+constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
+constexpr const char* MoreSlices[] = { "DSMSliceXIndices", "DSMSliceYIndices", "DSMSliceZIndices" };
 
 /// ParaView's definition lets the panel show the property for Volume alone, by a hint that is the same for all datasets.
 void ShowForVolumes(vtkSMProperty* property)
@@ -133,9 +136,7 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);
   auto* const display = vtkSMPVRepresentationProxy::SafeDownCast(this->GetParentProxy());
-  const bool isOfSlices = this->GetXMLName() == std::string("DSMSliceRepresentation");
-  const std::string type = isOfSlices ? "DSM Slices" : "DSM Volume";
-  if (!display || vtkSMPropertyHelper(display, "Representation").GetAsString() != type)
+  if (!this->IsShown(display))
   {
     return;
   }
@@ -145,11 +146,15 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     shown->FollowData();
   }
+  if (this->IsOfSlices())
+  {
+    this->ChooseSlices(display);
+  }
   if (!this->HasChosen)
   {
     this->ChooseArray(display);
   }
-  if (!isOfSlices)
+  if (!this->IsOfSlices())
   {
     this->ReportIgnored(display);
   }
@@ -176,6 +181,56 @@ void vtkSMDSMVolumeRepresentationProxy::ReportIgnored(vtkSMPVRepresentationProxy
     vtkWarningMacro(<< text);
   }
   this->Reported = text;
+}
+
+bool vtkSMDSMVolumeRepresentationProxy::IsOfSlices()
+{
+  return this->GetXMLName() == std::string("DSMSliceRepresentation");
+}
+
+bool vtkSMDSMVolumeRepresentationProxy::IsShown(vtkSMProxy* display)
+{
+  const std::string type = this->IsOfSlices() ? "DSM Slices" : "DSM Volume";
+  return display && vtkSMPropertyHelper(display, "Representation").GetAsString() == type;
+}
+
+void vtkSMDSMVolumeRepresentationProxy::ChooseSlices(vtkSMProxy* display)
+{
+  const vtkPVDSMNoUndo noUndo;
+  for (const char* name : SliceIndices)
+  {
+    vtkSMProperty* const property = display->GetProperty(name);
+    if (property->FindDomain<vtkSMDSMSliceIndexDomain>()->IsAutomatic() &&
+      !property->ResetToDomainDefaults())
+    {
+      vtkSMPropertyHelper(property).Set(-1); // the middle, which the frame finds out
+    }
+  }
+  display->UpdateVTKObjects();
+}
+
+void vtkSMDSMVolumeRepresentationProxy::TakeSlices()
+{
+  vtkSMProxy* const display = this->GetParentProxy();
+  vtkSMProperty* const points = this->GetProperty("DSMSlicePoints");
+  if (!this->IsOfSlices() || !this->IsShown(display))
+  {
+    return;
+  }
+  points->GetParent()->UpdatePropertyInformation(points);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const int count = vtkSMPropertyHelper(points).GetAsInt(axis);
+    for (const char* name : { SliceIndices[axis], MoreSlices[axis] })
+    {
+      vtkSMProperty* const property = display->GetProperty(name);
+      if (count > 0)
+      {
+        property->FindDomain<vtkSMDSMSliceIndexDomain>()->SetNumberOfSamples(count);
+      }
+    }
+  }
+  this->ChooseSlices(display);
 }
 
 /// The first one of points, or else of cells.

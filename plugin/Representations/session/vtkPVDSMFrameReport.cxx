@@ -9,6 +9,8 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 
+#include <algorithm>
+
 vtkStandardNewMacro(vtkPVDSMFrameReport);
 
 vtkPVDSMFrameReport::vtkPVDSMFrameReport() = default;
@@ -40,6 +42,16 @@ double* vtkPVDSMFrameReport::GetSuggestedRange()
   this->Range[0] = range ? range[0] : vtkMath::Nan();
   this->Range[1] = range ? range[1] : vtkMath::Nan();
   return this->Range;
+}
+
+int* vtkPVDSMFrameReport::GetSlicePoints()
+{
+  std::fill_n(this->SlicePoints, 3, 0);
+  if (this->Volume)
+  {
+    this->Volume->GetSlicePoints(this->SlicePoints);
+  }
+  return this->SlicePoints;
 }
 
 double vtkPVDSMFrameReport::GetFrameTime()

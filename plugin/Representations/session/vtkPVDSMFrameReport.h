@@ -49,6 +49,11 @@ public:
   double* GetSuggestedRange() VTK_SIZEHINT(2);
 
   /**
+   * Number of samples along each axis that slices may have the index of; zeros where there are no slices.
+   */
+  int* GetSlicePoints() VTK_SIZEHINT(3);
+
+  /**
    * Seconds the last frame took to trace; 0 without one.
    */
   double GetFrameTime();
@@ -103,6 +108,7 @@ private:
   bool Progressive = false;
   bool Interacting = false;
   int Samples[2] = { 0, 0 };
+  int SlicePoints[3] = { 0, 0, 0 };
   double Range[2] = { 0.0, 0.0 };
   std::string Text;
 };

@@ -6,6 +6,7 @@
 #include "vtkPiecewiseFunction.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 template <class FieldType>
@@ -51,20 +52,24 @@ void vtkDSMSceneVolume::AddSlices(
         ? bricks::Index3(glm::ceil(levels->Lattice.GetBounds()[1])) + bricks::Index3(1)
         : bricks::Index3(0));
   }
+  std::array<int, 3> most{};
+  for (const bricks::Index3& one : points)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      most[axis] = std::max(most[axis], static_cast<int>(one[axis]));
+    }
+  }
+  this->Mapper->SetSlicePoints(most);
   for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !points.empty(); ++number)
   {
     const int axis = this->Mapper->GetSliceAxis(number);
     const int index = this->Mapper->GetSliceIndex(number);
-    std::int64_t most = 0;
-    for (const bricks::Index3& one : points)
-    {
-      most = std::max(most, one[axis]);
-    }
-    if (index < 0 || index >= most)
+    if (index >= most[axis])
     {
       this->Messages.push_back("Slice " + std::to_string(index) + " along " + "xyz"[axis] +
         " is outside the volume and is not shown. Valid slices are 0 to " +
-        std::to_string(most - 1) + ".");
+        std::to_string(most[axis] - 1) + ".");
     }
   }
   this->ForEachField(*this->GetIso(), dataToWorld,

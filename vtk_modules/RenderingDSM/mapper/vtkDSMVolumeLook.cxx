@@ -26,7 +26,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 vtkDSMVolumeLook::vtkDSMVolumeLook(vtkDSMVolumeMapper* mapper, vtkProp3D* prop)
@@ -66,11 +68,16 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
 {
   std::vector<rt::SectionPlane> slices;
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));
+  std::set<std::pair<int, int>> indices; // each once
   for (int number = 0; number < this->Mapper->GetNumberOfSlices(); ++number)
   {
     const int axis = this->Mapper->GetSliceAxis(number);
     const int index = this->Mapper->GetSliceIndex(number);
-    if (index >= 0 && index < points[axis])
+    indices.emplace(axis, index < 0 ? (this->Mapper->GetSlicePoints()[axis] - 1) / 2 : index);
+  }
+  for (const auto& [axis, index] : indices)
+  {
+    if (index < points[axis])
     {
       glm::dvec4 place(0.0, 0.0, 0.0, 1.0);
       place[axis] = grid ? grid->GetPlace(axis, index) : index;

@@ -360,6 +360,11 @@ void vtkDSMVolumeMapper::SetSuggestedRange(const std::array<double, 2>& range)
   std::copy(range.begin(), range.end(), this->SuggestedRange);
 }
 
+void vtkDSMVolumeMapper::SetSlicePoints(const std::array<int, 3>& points)
+{
+  std::copy(points.begin(), points.end(), this->SlicePoints);
+}
+
 void vtkDSMVolumeMapper::UpdatePiece(int piece, int numberOfPieces)
 {
   if (this->GetNumberOfInputConnections(0) == 0)
@@ -530,6 +535,8 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OpacityComponent: " << this->OpacityComponent << "\n";
   os << indent << "Slicing: " << this->Slicing << "\n";
   os << indent << "Slices: " << this->Slices.size() << "\n";
+  os << indent << "SlicePoints: " << this->SlicePoints[0] << " " << this->SlicePoints[1] << " "
+     << this->SlicePoints[2] << "\n";
   os << indent << "SlicePlanes: " << this->SlicePlanes.Get() << "\n";
   os << indent << "SliceLighting: " << this->SliceLighting << "\n";
   os << indent << "InterpolateSlices: " << this->InterpolateSlices << "\n";

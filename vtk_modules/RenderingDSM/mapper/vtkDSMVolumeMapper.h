@@ -210,7 +210,8 @@ public:
   ///@{
   /**
    * Slices along the volume's axes, through its samples: `axis` is 0, 1 or 2, and `index` counts samples along it,
-   * from 0. Slices of the same place are one. A slice outside of the volume is reported and not shown.
+   * from 0; a negative one is the middle of the volume. Slices of the same place are one. A slice outside of the volume is
+   * reported and not shown.
    */
   void AddSlice(int axis, int index);
   void RemoveAllSlices();
@@ -218,6 +219,12 @@ public:
   int GetSliceAxis(int number) const { return this->Slices.at(number).first; }
   int GetSliceIndex(int number) const { return this->Slices.at(number).second; }
   ///@}
+
+  /**
+   * Number of samples along each axis that the slices of the last frame may have the index of: the most of all parts of the
+   * data. Zeros before the first frame with slices.
+   */
+  vtkGetVector3Macro(SlicePoints, int);
 
   ///@{
   /**
@@ -394,6 +401,7 @@ public:
   void SetGlobalBounds(const double bounds[6]);
   void SetSuggestedIsoValue(double value);
   void SetSuggestedRange(const std::array<double, 2>& range);
+  void SetSlicePoints(const std::array<int, 3>& points);
 
   /**
    * Brings the input up to date; each rank asks its pipeline for its own piece.
@@ -527,6 +535,7 @@ private:
   bool Slicing = false;
   std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
   vtkSmartPointer<vtkPlaneCollection> SlicePlanes;
+  int SlicePoints[3] = { 0, 0, 0 };
   bool SliceLighting = false;
   bool InterpolateSlices = true;
   vtkSmartPointer<vtkPiecewiseFunction> SliceOpacity;
