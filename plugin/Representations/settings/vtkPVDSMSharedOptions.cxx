@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMSharedOptions.h"
 
+#include "vtkPVDSMNoUndo.h"
 #include "vtkPVDSMProxyFinder.h"
 #include "vtkPVDSMWrittenProperties.h"
 
@@ -207,6 +208,7 @@ void vtkPVDSMSharedOptions::Add(vtkSMProxy* proxy, Word word)
   {
     return;
   }
+  const vtkPVDSMNoUndo noUndo;
   vtkSMProxy* values = this->Proxies.front();
   this->IsSpreading = true;
   for (const std::string& name : this->Names)
