@@ -73,8 +73,8 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeAllKinds()
   return blocks;
 }
 
-/// Cells of a cube of 16^3 that are 2 long: those from `first` to before `last` on x, of which those before `own` and from
-/// `end` on are ghosts. They hold the distances of their centers.
+/// Cells of a cube of 16^3 that are 2 long: those from `first` to before `last` on x, of which
+/// those before `own` and from `end` on are ghosts. They hold the distances of their centers.
 struct Slab
 {
   int First;
@@ -136,8 +136,8 @@ vtkSmartPointer<vtkDataSet> MakeCells(bool isRectilinear, const Slab& slab, doub
   return grid;
 }
 
-/// What cells' values are at points, as Cell Data to Point Data has them: the means of the cells around. Of the points from
-/// `first` to `last` on x.
+/// What cells' values are at points, as Cell Data to Point Data has them: the means of the cells
+/// around. Of the points from `first` to `last` on x.
 vtkSmartPointer<vtkImageData> MakeMeans(int first, int last)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();

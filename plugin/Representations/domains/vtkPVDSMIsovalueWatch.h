@@ -23,8 +23,8 @@ public:
   vtkPVDSMIsovalueWatch(const vtkPVDSMIsovalueWatch&) = delete;
   vtkPVDSMIsovalueWatch& operator=(const vtkPVDSMIsovalueWatch&) = delete;
 
-  /// After a render of a traced dataset; meshes and outer surfaces have no isovalue. Slices get their indices. A list of isovalues that the user begins has the single
-  /// one first.
+  /// After a render of a traced dataset; meshes and outer surfaces have no isovalue. Slices get
+  /// their indices. A list of isovalues that the user begins has the single one first.
   void TakeSuggestion(vtkSMProxy* representation);
   /// From now on; the slider, too, in the application. Doing so again changes nothing.
   void Watch(vtkSMProxy* representation, bool isInApplication);

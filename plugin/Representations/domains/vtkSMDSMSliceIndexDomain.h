@@ -3,8 +3,8 @@
  * @class   vtkSMDSMSliceIndexDomain
  * @brief   the samples of the input along an axis, counted from 0; the default is the middle one
  *
- * The extent of one image tells them. Blocks, AMR, and images with ghost cells have extents that say nothing of the volume
- * that they make: their samples are unknown until they are rendered.
+ * The extent of one image tells them. Blocks, AMR, and images with ghost cells have extents that
+ * say nothing of the volume that they make: their samples are unknown until they are rendered.
  *
  * The attribute `axis` (0, 1 or 2) is the axis. The name is what ParaView makes of the element DSMSliceIndexDomain.
  */

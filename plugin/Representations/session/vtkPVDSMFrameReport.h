@@ -49,7 +49,8 @@ public:
   double* GetSuggestedRange() VTK_SIZEHINT(2);
 
   /**
-   * Number of samples along each axis that slices may have the index of; zeros where there are no slices.
+   * Number of samples along each axis that slices may have the index of; zeros where there are no
+   * slices.
    */
   int* GetSlicePoints() VTK_SIZEHINT(3);
 

@@ -28,8 +28,8 @@ public:
   void ReadCellMask(const Box& cells, std::uint8_t* out) const override;
 
   const CellReader& GetPiece() const { return *this->Piece; }
-  /// The layer of cells around a piece, as boxes that do not overlap. It has cells outside of the lattice, too: ghost cells
-  /// may be copies of cells that lie in no lattice, or in another one.
+  /// The layer of cells around a piece, as boxes that do not overlap. It has cells outside of the
+  /// lattice, too: ghost cells may be copies of cells that lie in no lattice, or in another one.
   static std::vector<Box> GetLayer(const Box& piece);
   /// Adds neighboring cells, which lie within one box of the layer, of a piece of that number: their states, then their
   /// values, component by component, in native byte order. For each cell the lowest piece counts that has it, or else

@@ -15,7 +15,8 @@
 namespace bricks
 {
 
-/// Gives every piece of a lattice the values of the cells around it, which other pieces have, or which ghost cells copy.
+/// Gives every piece of a lattice the values of the cells around it, which other pieces have, or
+/// which ghost cells copy.
 namespace CellExchange
 {
 

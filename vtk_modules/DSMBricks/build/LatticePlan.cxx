@@ -20,8 +20,8 @@ namespace bricks
 namespace
 {
 
-/// Two pieces share sampling points when these differ by whole cells, within this part of one: files keep origins and
-/// coordinates in single precision, too.
+/// Two pieces share sampling points when these differ by whole cells, within this part of one:
+/// files keep origins and coordinates in single precision, too.
 constexpr double AlignmentTolerance = 1e-3;
 constexpr double SpacingTolerance = 1e-7;
 
@@ -97,8 +97,9 @@ bool IsContinued(const std::vector<double>& a, std::size_t first, const std::vec
   return count > 0;
 }
 
-/// Finds the number of planes of a that lie before the first plane of b, by coordinates on one axis. Returns false unless
-/// they have planes in common, and the same planes wherever both have some.
+/// Finds the number of planes of a that lie before the first plane of b, by coordinates on one
+/// axis. Returns false unless they have planes in common, and the same planes wherever both have
+/// some.
 bool FindShift(const std::vector<double>& a, const std::vector<double>& b, std::int64_t& shift)
 {
   const auto count = static_cast<std::int64_t>(a.size());
@@ -358,7 +359,8 @@ std::vector<Placed> Place(
   std::vector<int> classes;
   std::vector<int> order(pieces.size());
   std::iota(order.begin(), order.end(), 0);
-  // Whatever the ranks: the first block says where points are that others have a little beside them.
+  // Whatever the ranks: the first block says where points are that others have a little beside
+  // them.
   std::stable_sort(
     order.begin(), order.end(), [&](int a, int b) { return pieces[a].Leaf < pieces[b].Leaf; });
   for (const int index : order)

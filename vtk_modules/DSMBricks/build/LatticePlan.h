@@ -36,8 +36,9 @@ struct PieceInfo
 
 /// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
 /// touch form one lattice, unless they are of blocks that are to stay apart. Rectilinear pieces are on the same points where
-/// all their coordinates are equal in the ranges that they share. Points may differ by a small part of a cell; the ones of the
-/// lowest block count. The result depends on the blocks' numbers, and on the order of the pieces of one block.
+/// all their coordinates are equal in the ranges that they share. Points may differ by a small part
+/// of a cell; the ones of the lowest block count. The result depends on the blocks' numbers, and on
+/// the order of the pieces of one block.
 class LatticePlan
 {
 public:

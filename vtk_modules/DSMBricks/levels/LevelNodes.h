@@ -71,8 +71,9 @@ private:
 /// has the value that the largest such leaf has there. So a leaf's value on a face is the same from both sides, whatever the
 /// levels, up to the rounding of hanging points to the type of the samples.
 ///
-/// Where nothing is beyond a point, the mean of the values of cells is one half a cell inside. The function goes on to the
-/// border as it is from there to the next point inside, so that a linear one keeps its values, but not beyond those of all cells.
+/// Where nothing is beyond a point, the mean of the values of cells is one half a cell inside. The
+/// function goes on to the border as it is from there to the next point inside, so that a linear
+/// one keeps its values, but not beyond those of all cells.
 ///
 /// Calls come in the order of declaration. The results do not depend on the order of the leaves.
 class LevelNodes

@@ -50,8 +50,8 @@ public:
   struct Part
   {
     vtkSmartPointer<vtkDataObject> Data; ///< a hyper tree grid with cells, or an image of AMR
-    /// Flat index of what it is a piece of, in the rank's composite dataset; 0 without one. Pieces of one hyper tree grid have
-    /// the same on all ranks, and a block of AMR has its own.
+    /// Flat index of what it is a piece of, in the rank's composite dataset; 0 without one. Pieces
+    /// of one hyper tree grid have the same on all ranks, and a block of AMR has its own.
     std::int64_t Dataset = 0;
     vtkDSMBlockLook Look = {};
   };

@@ -210,8 +210,8 @@ public:
   ///@{
   /**
    * Slices along the volume's axes, through its samples: `axis` is 0, 1 or 2, and `index` counts samples along it,
-   * from 0; a negative one is the middle of the volume. Slices of the same place are one. A slice outside of the volume is
-   * reported and not shown.
+   * from 0; a negative one is the middle of the volume. Slices of the same place are one. A slice
+   * outside of the volume is reported and not shown.
    */
   void AddSlice(int axis, int index);
   void RemoveAllSlices();
@@ -221,8 +221,8 @@ public:
   ///@}
 
   /**
-   * Number of samples along each axis that the slices of the last frame may have the index of: the most of all parts of the
-   * data. Zeros before the first frame with slices.
+   * Number of samples along each axis that the slices of the last frame may have the index of: the
+   * most of all parts of the data. Zeros before the first frame with slices.
    */
   vtkGetVector3Macro(SlicePoints, int);
 

@@ -105,7 +105,8 @@ public:
   }
 
 private:
-  /// `finestPiece`: length of a piece of the finest level that is described as one; 0: pieces are not described.
+  /// `finestPiece`: length of a piece of the finest level that is described as one; 0: pieces are
+  /// not described.
   void MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
     LevelPackets& packets, double finestPiece, MediumLight& light) const
   {
