@@ -11,7 +11,7 @@
 #   SLIDER   range of the panel's slider, where it has one
 #   CHOICES  numbers that the panel's slider offers instead
 #   ENTRIES  of an enum: a name in C++ and a text for each value from 0
-#   NEEDS    light: no effect on a volume without Shade and Scattering; no_volume: none on a volume
+#   NEEDS    light: no effect on a volume without Shade; no_volume: none on a volume
 #   PANEL    first: below Representation; default or advanced: in the group Ray Tracing. Without: not in the panel.
 #   ZERO     what the value 0 means, on the settings page
 #   PAGE_DEFAULT, PAGE_ENTRIES  of what is no setting of the ranks, but on the settings page: default, number of entries

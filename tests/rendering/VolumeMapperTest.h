@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 /// Of the window.
@@ -54,6 +55,17 @@ inline vtkSmartPointer<vtkImageData> MakeBall()
   }
   image->GetPointData()->SetScalars(distance);
   return image;
+}
+
+/// The mean difference of two pictures' channels, in 255ths.
+inline double GetDifference(vtkUnsignedCharArray* one, vtkUnsignedCharArray* other)
+{
+  double sum = 0.0;
+  for (vtkIdType value = 0; value < one->GetNumberOfValues(); ++value)
+  {
+    sum += std::abs(one->GetValue(value) - other->GetValue(value));
+  }
+  return sum / static_cast<double>(one->GetNumberOfValues());
 }
 
 /// A ball in a window of its own.

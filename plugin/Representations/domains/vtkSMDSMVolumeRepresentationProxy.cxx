@@ -117,11 +117,10 @@ void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
   }
   if (vtkSMProperty* const direction = display->GetProperty("VolumeAnisotropy"))
   {
-    const std::string scatters =
-      Decorator + "mode='enabled_state' property='DSMScattering' value='0' inverse='1'/>";
+    const std::string isShaded = Decorator + "mode='enabled_state' property='Shade' value='1'/>";
     const std::string isVolume =
       Decorator + "mode='enabled_state' property='Representation' value='Volume'/>";
-    vtkPVDSMHints::Change(direction, MakeEither({ scatters, isVolume }), nullptr);
+    vtkPVDSMHints::Change(direction, MakeEither({ isShaded, isVolume }), nullptr);
   }
   for (const char* name : { "ScalarOpacityUnitDistance", "VolumeAnisotropy" })
   {

@@ -399,8 +399,7 @@ private:
     if (!displaced.empty())
     {
       this->Warnings.push_back("has arrays at different positions. All are shown at those of " +
-        Quote(this->Arrays.front().Name) +
-        ". Arrays at other positions: " + ListNames(displaced));
+        Quote(this->Arrays.front().Name) + ". Arrays at other positions: " + ListNames(displaced));
     }
   }
 

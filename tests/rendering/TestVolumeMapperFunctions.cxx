@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Color and opacity functions of media, beside VTK's mappers and in ranges of any size.
+#include "VolumeMapperTest.h"
+
+#include "vtkColorTransferFunction.h"
+#include "vtkDiscretizableColorTransferFunction.h"
+#include "vtkGPUVolumeRayCastMapper.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVolumeProperty.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace
+{
+
+/// Beside the logarithms of the values with functions that are linear in these.
+TEST_F(VolumeMapper, LowDecadesOfALogarithmicMapAreSeen)
+{
+  const double nodes[][3] = { { 0.0, 0.9, 0.0 }, { 0.3, 0.2, 0.0 }, { 0.5, 0.2, 0.9 },
+    { 0.7, 0.4, 0.0 }, { 2.5, 0.6, 0.0 }, { 3.0, 0.9, 0.5 }, { 3.5, 0.5, 0.0 }, { 5.0, 0.3, 0.0 } };
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  vtkNew<vtkDSMVolumeMapper> mapper;
+  vtkSmartPointer<vtkUnsignedCharArray> pictures[2];
+  for (const bool isLogarithmic : { false, true })
+  {
+    const auto image = MakeBall();
+    vtkDataArray* const values = image->GetPointData()->GetScalars();
+    vtkNew<vtkDiscretizableColorTransferFunction> colors;
+    colors->DiscretizeOff();
+    vtkNew<vtkPiecewiseFunction> opacity;
+    const auto get = [=](double exponent)
+    { return isLogarithmic ? std::pow(10.0, exponent) : exponent; };
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      values->SetTuple1(point, get(std::min(6.0 * values->GetTuple1(point), 5.0)));
+    }
+    for (const auto& node : nodes)
+    {
+      colors->AddRGBPoint(get(node[0]), node[1], 1.0 - node[1], 0.3);
+      opacity->AddPoint(get(node[0]), node[2]);
+    }
+    colors->SetUseLogScale(isLogarithmic);
+    opacity->SetUseLogScale(isLogarithmic);
+    vtkNew<vtkVolumeProperty> property;
+    property->SetColor(colors);
+    property->SetScalarOpacity(opacity);
+    this->Volume->SetProperty(property);
+    mapper->SetInputDataObject(image);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    pictures[isLogarithmic ? 1 : 0] = pixels;
+  }
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 0.8);
+  this->Volume->SetMapper(this->Mapper); // the other one goes
+}
+
+/// Shows each kind of picture that a volume's functions define.
+class VolumeMapperOfFunctions : public VolumeMapper
+{
+protected:
+  VolumeMapperOfFunctions()
+  {
+    this->Opacity->AllowDuplicateScalarsOn();
+    this->Property->SetInterpolationTypeToLinear();
+    this->Property->SetColor(this->Colors);
+    this->Property->SetScalarOpacity(this->Opacity);
+    this->Volume->SetProperty(this->Property);
+    this->Place();
+    this->Renderer->AddVolume(this->Volume);
+    this->Mapper->SetNumberOfIsoValues(0);
+    this->Mapper->SetIsoArray("");
+    vtkNew<vtkPlane> plane;
+    plane->SetNormal(1.0, 0.2, 0.1);
+    this->Mapper->AddClippingPlane(plane);
+  }
+
+  /// Sets the functions' nodes: values; red, and the opacity there.
+  void SetNodes(const std::vector<std::array<double, 3>>& nodes)
+  {
+    this->Colors->RemoveAllPoints();
+    this->Opacity->RemoveAllPoints();
+    for (const auto& [value, red, opacity] : nodes)
+    {
+      this->Colors->AddRGBPoint(value, red, 1.0 - red, 0.3);
+      this->Opacity->AddPoint(value, opacity);
+    }
+  }
+
+  /// The medium, its faces, the largest and the smallest values, and the sum.
+  std::vector<vtkSmartPointer<vtkUnsignedCharArray>> DrawAll(vtkImageData* image)
+  {
+    std::vector<vtkSmartPointer<vtkUnsignedCharArray>> pictures;
+    this->Mapper->SetInputData(image);
+    for (int kind = 0; kind < 5; ++kind)
+    {
+      this->Mapper->SetCapping(kind == 1);
+      this->Mapper->SetCapOpacity(kind == 1);
+      this->Mapper->SetBlendMode(kind == 2 ? vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND
+          : kind == 3                      ? vtkVolumeMapper::MINIMUM_INTENSITY_BLEND
+          : kind == 4                      ? vtkVolumeMapper::ADDITIVE_BLEND
+                                           : vtkVolumeMapper::COMPOSITE_BLEND);
+      this->Window->Render();
+      vtkNew<vtkUnsignedCharArray> pixels;
+      this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+      pictures.emplace_back(pixels);
+    }
+    return pictures;
+  }
+
+  vtkNew<vtkVolumeProperty> Property;
+  vtkNew<vtkColorTransferFunction> Colors;
+  vtkNew<vtkPiecewiseFunction> Opacity;
+};
+
+TEST_F(VolumeMapperOfFunctions, NarrowPeaksAreTheSameInAnyRange)
+{
+  this->Property->SetScalarOpacityUnitDistance(1e-3);
+  // A quarter of an even bin of the data's range, or a hundredth of the functions'.
+  const double width = 5e-5;
+  std::vector<vtkSmartPointer<vtkUnsignedCharArray>> pictures[2];
+  for (const bool isWide : { false, true })
+  {
+    this->SetNodes({ { isWide ? 0.0 : 0.4 - 49.0 * width, 0.2, 0.0 }, { 0.4, 0.2, 0.0 },
+      { 0.4 + 0.5 * width, 0.2, 1.0 }, { 0.4 + width, 0.9, 0.0 },
+      { isWide ? 1.0 : 0.4 + 50.0 * width, 0.9, 0.0 } });
+    pictures[isWide ? 1 : 0] = this->DrawAll(MakeBall());
+  }
+  for (const int kind : { 0, 1 })
+  {
+    EXPECT_LT(GetDifference(pictures[0][kind], pictures[1][kind]), 0.1) << kind;
+  }
+  this->SetNodes({ { 0.0, 0.2, 0.0 }, { 1.0, 0.9, 0.0 } });
+  EXPECT_GT(GetDifference(pictures[1][0], this->DrawAll(MakeBall())[0]), 5.0);
+}
+
+/// Beside the same colors as many straight lines.
+TEST_F(VolumeMapperOfFunctions, LogarithmicMapsOfValuesBelowZeroHaveTheColorsOfTheLegend)
+{
+  const auto image = MakeBall();
+  vtkDataArray* const values = image->GetPointData()->GetScalars();
+  for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+  {
+    values->SetTuple1(point, 400.0 * values->GetTuple1(point) - 60.0);
+  }
+  this->Property->SetScalarOpacityUnitDistance(2.0);
+  constexpr double first = 0.1;
+  constexpr double last = 200.0;
+  std::vector<vtkSmartPointer<vtkUnsignedCharArray>> pictures[2];
+  for (const bool isLogarithmic : { false, true })
+  {
+    this->Colors->RemoveAllPoints();
+    this->Colors->SetScale(isLogarithmic ? VTK_CTF_LOG10 : VTK_CTF_LINEAR);
+    const int count = isLogarithmic ? 1 : 400;
+    for (int node = 0; node <= count; ++node)
+    {
+      const double red = static_cast<double>(node) / count;
+      this->Colors->AddRGBPoint(first * std::pow(last / first, red), red, 1.0 - red, 0.3);
+    }
+    this->Opacity->RemoveAllPoints();
+    this->Opacity->AddPoint(-30.0, 0.3);
+    this->Opacity->AddPoint(last, 0.1);
+    pictures[isLogarithmic ? 1 : 0] = this->DrawAll(image);
+  }
+  for (int kind = 0; kind < 5; ++kind)
+  {
+    EXPECT_LT(GetDifference(pictures[0][kind], pictures[1][kind]), 0.3) << kind;
+  }
+  EXPECT_GT(GetDifference(pictures[1][0], pictures[1][2]), 5.0);
+}
+
+TEST_F(VolumeMapperOfFunctions, ColorsBelowAndAboveTheRangeAreThoseOfTheRayCastMapper)
+{
+  this->SetNodes({ { 0.2, 0.2, 0.3 }, { 0.4, 0.6, 0.3 } });
+  const auto before = this->DrawAll(MakeBall());
+  this->Colors->SetUseBelowRangeColor(true);
+  this->Colors->SetBelowRangeColor(1.0, 0.0, 0.0);
+  this->Colors->SetUseAboveRangeColor(true);
+  this->Colors->SetAboveRangeColor(0.0, 0.1, 1.0);
+  const auto after = this->DrawAll(MakeBall());
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    EXPECT_GT(GetDifference(before[kind], after[kind]), 5.0) << kind;
+  }
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetAutoAdjustSampleDistances(0);
+  theirs->SetSampleDistance(0.1f);
+  theirs->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+  EXPECT_LT(GetDifference(after[0], this->Draw(theirs)), 1.5);
+  theirs->SetBlendModeToMaximumIntensity();
+  EXPECT_LT(GetDifference(after[2], this->Draw(theirs)), 1.5);
+  this->Volume->SetMapper(this->Mapper); // the other one goes
+  // The ends of the range are in it.
+  const auto image = MakeBall();
+  for (const double end : { 0.2, 0.4 })
+  {
+    image->GetPointData()->GetScalars()->Fill(end);
+    const auto inside = this->DrawAll(image);
+    this->Colors->SetUseBelowRangeColor(false);
+    this->Colors->SetUseAboveRangeColor(false);
+    const auto plain = this->DrawAll(image);
+    this->Colors->SetUseBelowRangeColor(true);
+    this->Colors->SetUseAboveRangeColor(true);
+    for (int kind = 0; kind < 3; ++kind)
+    {
+      EXPECT_LT(GetDifference(inside[kind], plain[kind]), 0.1) << kind << ", " << end;
+    }
+  }
+}
+
+TEST_F(VolumeMapperOfFunctions, TheMeanOfASingleValueIsThatOfTheRayCastMapper)
+{
+  this->SetNodes({ { 0.0, 0.2, 1.0 }, { 300.0, 0.9, 1.0 } });
+  const auto image = MakeBall();
+  image->GetPointData()->GetScalars()->Fill(255.0);
+  this->Renderer->SetBackground(0.2, 0.5, 0.3);
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetClippingPlanes(this->Mapper->GetClippingPlanes());
+  vtkNew<vtkUnsignedCharArray> pictures[2];
+  for (vtkVolumeMapper* const mapper :
+    { static_cast<vtkVolumeMapper*>(theirs.Get()), static_cast<vtkVolumeMapper*>(this->Mapper) })
+  {
+    mapper->SetInputDataObject(image);
+    mapper->SetBlendMode(vtkVolumeMapper::AVERAGE_INTENSITY_BLEND);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    this->Window->GetPixelData(
+      0, 0, Size - 1, Size - 1, 0, pictures[mapper == theirs.Get() ? 0 : 1]);
+  }
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 1.5);
+}
+
+TEST_F(VolumeMapperOfFunctions, WhereOnlyTheColorIsNotANumberItIsTheMapsColorForThat)
+{
+  this->SetNodes({ { 0.0, 1.0, 0.3 }, { 0.5, 1.0, 0.3 }, { 1.0, 0.0, 0.3 } });
+  this->Colors->SetNanColor(0.0, 1.0, 0.3);
+  this->Property->SetScalarOpacityUnitDistance(4.0);
+  this->Mapper->SetOpacityArray("density");
+  std::vector<vtkSmartPointer<vtkUnsignedCharArray>> pictures;
+  for (const double value : { 1.0, std::nan("") })
+  {
+    const auto image = MakeBall();
+    vtkDataArray* const values = image->GetPointData()->GetScalars();
+    vtkNew<vtkDoubleArray> density;
+    density->SetName("density");
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      values->SetTuple1(point, image->GetPoint(point)[1] > 0.0 ? value : 0.5);
+      density->InsertNextValue(0.5);
+    }
+    image->GetPointData()->AddArray(density);
+    pictures.push_back(this->DrawAll(image)[0]);
+  }
+  this->Mapper->SetOpacityArray("");
+  EXPECT_LT(GetDifference(pictures[0], pictures[1]), 2.0);
+  EXPECT_GT(pictures[1]->GetRange(1)[1], 100.0) << "green is seen";
+}
+
+} // namespace
