@@ -2,6 +2,8 @@
 // Volumes as media, beside those of VTK's mappers.
 #include "VolumeMapperTest.h"
 
+#include "vtkDSMLightOptions.h"
+
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
