@@ -214,8 +214,10 @@ render(view)
 points, normals = read_points(export("amr.x3d"))
 radii = numpy.linalg.norm(points, axis=1)
 radius = pulse.XPulseWidth * math.sqrt(math.log(pulse.PulseAmplitude / 0.2))
-check(len(points) > 50 and abs(radii - radius).max() < 0.15,
-      f"{len(points)} points with radii from {radii.min()} to {radii.max()}, of {radius}")
+# Between the centers of cells: a Gaussian is not linear in the half cell beyond them.
+inside = radii[((points >= [-1.75, -1.75, 0.25]) & (points <= [0.25, 0.25, 2.25])).all(axis=1)]
+check(len(inside) > 20 and abs(inside - radius).max() < 0.1,
+      f"{len(inside)} points with radii from {inside.min()} to {inside.max()}, of {radius}")
 outward = (normals * points).sum(axis=1) / radii
 check(outward.min() > 0.8, f"normals point where values fall: {outward.min()}")
 colors = read_colors(export("amr.gltf"))

@@ -38,13 +38,12 @@ std::vector<double> FindDefault(vtkSMVectorProperty* property)
   return {};
 }
 
-/// Returns whether a display that was made before its data has this: an index below 0, or a box that is inverted or,
-/// since ParaView 6, without extent.
+/// Returns whether a display that was made before its data has this: a box that is inverted or, since ParaView 6,
+/// without extent.
 bool IsOfNothing(const std::vector<double>& values)
 {
   const auto isFlat = [&](std::size_t axis) { return !(values[2 * axis] < values[2 * axis + 1]); };
-  return values.size() == 1 ? values[0] < 0.0
-                            : values.size() == 6 && isFlat(0) && isFlat(1) && isFlat(2);
+  return values.size() == 6 && isFlat(0) && isFlat(1) && isFlat(2);
 }
 
 } // namespace

@@ -56,6 +56,7 @@ vtkSmartPointer<vtkPVXMLElement> MakeEither(const std::vector<std::string>& hint
   }
   return MakeHint(text + "</Expression></PropertyWidgetDecorator>");
 }
+
 constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
 constexpr const char* MoreSlices[] = { "DSMSliceXIndices", "DSMSliceYIndices", "DSMSliceZIndices" };
 
@@ -139,7 +140,7 @@ void vtkSMDSMVolumeRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   {
     return;
   }
-  // The proxy with the properties that the panel shows was told of the update before this one.
+  // ParaView updates the proxy with the properties that the panel shows before this one.
   vtkSMProxy* const isosurfaces = display->GetProperty("DSMCroppingBox")->GetParent();
   if (auto* const shown = vtkSMDSMRepresentationProxy::SafeDownCast(isosurfaces))
   {

@@ -349,9 +349,11 @@ private:
     {
       return density * amount;
     }
-    glm::dvec3 lit = double(look.Surface.Ambient) * glm::dvec3(amount);
+    glm::dvec3 lit(0.0);
     for (const rt::Light& light : this->World.Lights)
     {
+      lit += double(look.Surface.Ambient) *
+        (light.IsLoneHeadlight ? glm::dvec3(amount) : amount.w * glm::dvec3(light.AmbientColor));
       const glm::dvec3 normal = glm::normalize(gradient);
       const glm::dvec3 mirrored = glm::reflect(light.Direction, normal);
       lit += glm::dvec3(light.Color) *
@@ -514,9 +516,12 @@ TEST_F(TestMediumIntegral, OfShadedMedia)
   rt::Light light;
   light.Direction = glm::normalize(glm::dvec3(-1.0, -2.0, -1.5));
   light.Color = { 0.9f, 0.8f, 0.7f };
+  light.AmbientColor = { 0.3f, 0.6f, 0.2f };
   this->World.Lights.push_back(light);
   // Highlights are taken where the middle of a cell's piece is.
   this->Add(GetWaves, Fog, Blending::Composite, GetShaded());
+  EXPECT_LT(this->Compare(GetPerspective()), 3.0);
+  this->World.Lights.front().IsLoneHeadlight = true;
   EXPECT_LT(this->Compare(GetPerspective()), 3.0);
   this->Add([](const glm::dvec3& p) { return 2.0 - 3.0 * glm::length(p); }, Rainbow);
   EXPECT_LT(this->Compare(GetPerspective()), 3.0);

@@ -33,7 +33,7 @@ struct ValidValues
         [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
   }
 
-  /// Returns false where there is no room for another one.
+  /// Returns false if it already holds as many as it can.
   bool AddFill(double fill)
   {
     const auto place = std::find_if(this->Fills.begin(), this->Fills.end(),

@@ -28,8 +28,8 @@ struct ColorMap
     double Value;
     glm::vec4 Color;
   };
-  /// Of the entries that a single color does not show: ascending, from one end of the entry to the
-  /// other.
+  /// Nodes of the entries that need more than one color, ascending, from one end of each entry to
+  /// the other.
   std::vector<Node> Nodes;
   /// For each entry of the table, the first of its nodes, and their number at the end. Empty: there are none.
   std::vector<std::uint32_t> FirstNode;

@@ -158,7 +158,7 @@ private:
   double Last; ///< end of the range, in bins from First
   int AllBins;
   std::vector<Bin> Table; ///< even bins, then the parts of all divided ones
-  /// Of each even bin, 0 if it is whole, else the number of its division.
+  /// Division number for each even bin; 0 for a bin that is whole.
   std::vector<std::uint32_t> Divisions;
   std::vector<Division> Divided; ///< by division; the first one is of no bin
   std::vector<double> Places;    ///< where each part begins, in even bins

@@ -14,8 +14,8 @@ namespace vol
 /// OME-Zarr image (https://ngff.openmicroscopy.org), of whose scales one is taken, with its
 /// channels as arrays and its times as steps. `path` is a folder, which has one of these, or, where
 /// options.Dataset is a path in it or the name of one of an image's "multiscales", several.
-/// ZarrAxes tells what the axes are. `options`: Level counts, too, and HasSpacing, as then nothing
-/// is read of where the samples lie. Throws dsm::Error.
+/// ZarrAxes finds the axes. `options`: also uses Level, and HasSpacing, with which the positions of
+/// the samples are not read. Throws dsm::Error.
 std::shared_ptr<VolumeFile> OpenZarr(const std::string& path, const OpenOptions& options);
 
 } // namespace vol

@@ -65,7 +65,7 @@ public:
     bool IsUsable() const { return this->Found == State::Usable; }
   };
 
-  /// There is no such array. Without a text, a hidden part has it, so nothing is wrong.
+  /// Thrown for an array that does not exist. The text is empty if a hidden part has it, which is no fault.
   class Missing : public dsm::Error
   {
   public:

@@ -18,8 +18,8 @@ bool IsLogarithmic(vtkColorTransferFunction* colors)
   return colors && colors->GetScale() == VTK_CTF_LOG10 && colors->GetRange()[0] > 0.0;
 }
 
-/// Adds the nodes of a function, and where curves between two of them are steepest. `middle`: the
-/// number of the midpoint in what VTK tells of a node.
+/// Adds the nodes of a function, and where curves between two of them are steepest. `middle`: index
+/// of the midpoint among the numbers of a VTK node.
 template <class Function, int Numbers>
 void AddFunctionNodes(
   Function* function, bool isLogarithmic, int middle, std::vector<double>& nodes)
