@@ -52,7 +52,7 @@ public:
   void SetLayers(const rt::Picture& frame, vtkMatrix4x4* projection, const double bounds[6]);
 
   /**
-   * Set this if the renderer has translucent geometry of other props: such surfaces are then drawn among it.
+   * Set this if the renderer has translucent geometry of other props, or FXAA: such surfaces are then drawn among it.
    * Otherwise they are drawn where VTK draws volumes, since VTK's pass for translucent geometry makes holes in the
    * window's alpha where opaque geometry is behind. Off by default.
    */

@@ -296,9 +296,11 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
     this->AddWholeView(request, bounds);
   }
   const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
-  this->Prop->SetIsAmongTranslucent(std::any_of(others.begin(), others.end(),
-    [](vtkProp* prop)
-    { return vtkVolume::SafeDownCast(prop) || prop->HasTranslucentPolygonalGeometry(); }));
+  // FXAA runs before volumes are drawn, but after ranks' images are composited: the picture would depend on the ranks.
+  this->Prop->SetIsAmongTranslucent(this->Renderer->GetUseFXAA() ||
+    std::any_of(others.begin(), others.end(),
+      [](vtkProp* prop)
+      { return vtkVolume::SafeDownCast(prop) || prop->HasTranslucentPolygonalGeometry(); }));
   this->Delivery.Show(request, std::move(picture), this->Renderer->GetActiveCamera(), projection,
     bounds, hasEdges, this->Prop);
 }
