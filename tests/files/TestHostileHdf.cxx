@@ -243,9 +243,21 @@ TEST(HostileHdf, DamagedObjectsAreTold)
   }
 }
 
-/// Sizes in the heap of texts and references, which the library follows wherever they lead.
+/// As h5py's, which accepts any opaque type, and then fails.
+herr_t ConvertForOthers(
+  hid_t, hid_t, H5T_cdata_t* data, size_t, size_t, size_t, void*, void*, hid_t)
+{
+  data->need_bkg = H5T_BKG_NO;
+  return data->command == H5T_CONV_CONV ? -1 : 0;
+}
+
+/// Sizes in the heap of texts and references, which the library follows wherever they lead. Other code in the process may have
+/// conversions of its own.
 TEST(HostileHdf, DamagedHeapsAreRefused)
 {
+  const HdfHandle anyList(H5Tvlen_create(H5T_NATIVE_CHAR), &H5Tclose);
+  const HdfHandle anyOpaque(H5Tcreate(H5T_OPAQUE, 8), &H5Tclose);
+  H5Tregister(H5T_PERS_SOFT, "others", anyList.Get(), anyOpaque.Get(), &ConvertForOthers);
   const fs::path path = MakeFolder("heap") / "heap.h5";
   const std::uint64_t sizes[] = { std::uint64_t(1) << 44, ~std::uint64_t(15), 24 };
   for (const bool areTexts : { true, false })
@@ -291,6 +303,7 @@ TEST(HostileHdf, DamagedHeapsAreRefused)
     WriteText(path, bytes);
     ExpectRefusal(path, { "global heap" });
   }
+  H5Tunregister(H5T_PERS_SOFT, "others", anyList.Get(), anyOpaque.Get(), &ConvertForOthers);
 }
 
 TEST(HostileHdf, ExtentsBeyondTheIndicesOfVtkAreRefused)

@@ -20,10 +20,19 @@ namespace
 constexpr std::size_t LengthBytes = 4; ///< of an element in the file, before an address and
 constexpr std::size_t IndexBytes = 4;
 
-/// A conversion that leaves an element as it is in the file.
-herr_t KeepBytes(hid_t, hid_t, H5T_cdata_t* data, size_t, size_t, size_t, void*, void*, hid_t)
+constexpr const char* OwnTag = "DSM element of a list";
+
+/// A conversion that leaves an element as it is in the file. It refuses opaque types of others.
+herr_t KeepBytes(hid_t, hid_t to, H5T_cdata_t* data, size_t, size_t, size_t, void*, void*, hid_t)
 {
-  data->need_bkg = H5T_BKG_NO;
+  if (data->command == H5T_CONV_INIT)
+  {
+    char* const tag = H5Tget_tag(to);
+    const bool isOwn = tag && std::string(tag) == OwnTag;
+    H5free_memory(tag);
+    data->need_bkg = H5T_BKG_NO;
+    return isOwn ? 0 : -1;
+  }
   return 0;
 }
 
@@ -33,16 +42,15 @@ std::vector<std::byte> ReadElements(hid_t attribute, std::size_t count, std::siz
 {
   const HdfHandle opaque(H5Tcreate(H5T_OPAQUE, bytes), &H5Tclose);
   const HdfHandle list(H5Tvlen_create(H5T_NATIVE_CHAR), &H5Tclose);
-  H5T_cdata_t* unused = nullptr;
-  if (!H5Tfind(list.Get(), opaque.Get(), &unused))
-  {
-    H5Tregister(H5T_PERS_SOFT, "elements of a list", list.Get(), opaque.Get(), &KeepBytes);
-  }
+  H5Tset_tag(opaque.Get(), OwnTag);
+  // The library asks the conversion that was registered last: h5py has one for any opaque type.
+  H5Tregister(H5T_PERS_SOFT, OwnTag, list.Get(), opaque.Get(), &KeepBytes);
   std::vector<std::byte> elements(count * bytes);
   if (H5Aread(attribute, opaque.Get(), elements.data()) < 0)
   {
     elements.clear();
   }
+  H5Tunregister(H5T_PERS_SOFT, OwnTag, list.Get(), opaque.Get(), &KeepBytes);
   return elements;
 }
 
