@@ -408,8 +408,8 @@ void RefuseFlatData(const std::vector<PieceInfo>& pieces)
           [axis](const PieceInfo& piece) { return piece.Max[axis] <= piece.Min[axis]; }))
     {
       throw dsm::Error(std::string("The image has no cells along ") + "xyz"[axis] +
-        ". An isosurface requires a volume with at least two points along each axis. Use Contour "
-        "for two-dimensional images.");
+        ". Isosurfaces, volumes and slices require at least two points along each axis. Show a "
+        "two-dimensional image as Surface, or use Contour.");
     }
   }
 }

@@ -69,7 +69,7 @@ void vtkDSMSceneVolume::AddSlices(
     {
       this->Messages.push_back("Slice " + std::to_string(index) + " along " + "xyz"[axis] +
         " is outside the volume and is not shown. Valid slices are 0 to " +
-        std::to_string(most[axis] - 1) + ".");
+        std::to_string(most[axis] - 1) + ". Choose one of them, or -1 for the middle.");
     }
   }
   this->ForEachField(*this->GetIso(), dataToWorld,
