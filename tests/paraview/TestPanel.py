@@ -110,6 +110,11 @@ for source in (simple.Wavelet(), simple.AMRGaussianPulseSource(), simple.HyperTr
     check(not is_active(display, "VolumeAnisotropy"), "nothing is scattered in a direction")
     check(not is_active(display, "DSMScattering"), "a volume that shines by itself scatters no light")
     display.Shade = 1
-    lit = [name for name in LIT + ["VolumeAnisotropy", "DSMScattering"] if not is_active(display, name)]
+    lit = [name for name in LIT + ["VolumeAnisotropy"] if not is_active(display, name)]
     check(not lit, f"a shaded volume is lit, but not by {lit}")
+    for light in ("DSMShadows", "DSMAmbientOcclusionSamples"):
+        check(not is_active(display, "DSMScattering"), f"nothing is scattered before {light}")
+        setattr(display, light, 1)
+        check(is_active(display, "DSMScattering"), f"light is scattered with {light}")
+        setattr(display, light, 0)
     simple.Delete(source)
