@@ -97,6 +97,15 @@ bool IsContinued(const std::vector<double>& a, std::size_t first, const std::vec
   return count > 0;
 }
 
+/// Returns whether any planes of two lists that rise or fall can be the same: most blocks are apart.
+bool CanMeet(const std::vector<double>& a, const std::vector<double>& b)
+{
+  const auto [leastOfA, mostOfA] = std::minmax(a.front(), a.back());
+  const auto [leastOfB, mostOfB] = std::minmax(b.front(), b.back());
+  const double slack = AlignmentTolerance * (mostOfA - leastOfA + mostOfB - leastOfB);
+  return leastOfA <= mostOfB + slack && leastOfB <= mostOfA + slack;
+}
+
 /// Finds the number of planes of a that lie before the first plane of b, by coordinates on one
 /// axis. Returns false unless they have planes in common, and the same planes wherever both have
 /// some.
@@ -227,6 +236,13 @@ private:
   {
     const GridPlanes::Coordinates& one = this->Coordinates[static_cast<std::size_t>(a)];
     const GridPlanes::Coordinates& other = this->Coordinates[static_cast<std::size_t>(b)];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!CanMeet(one[axis], other[axis]))
+      {
+        return false;
+      }
+    }
     for (int axis = 0; axis < 3; ++axis)
     {
       if (!FindShift(one[axis], other[axis], shift[axis]))

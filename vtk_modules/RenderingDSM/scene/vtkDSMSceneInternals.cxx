@@ -295,7 +295,8 @@ void vtkDSMScene::Internals::DrawPicture(rt::Picture picture, const rt::FrameReq
   {
     this->AddWholeView(request, bounds);
   }
-  const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
+  const std::vector<vtkProp*> others =
+    request.Layers > 1 ? this->Members.FindOthers(this->Renderer) : std::vector<vtkProp*>();
   // FXAA runs before volumes are drawn, but after ranks' images are composited: the picture would depend on the ranks.
   this->Prop->SetIsAmongTranslucent(this->Renderer->GetUseFXAA() ||
     std::any_of(others.begin(), others.end(),
