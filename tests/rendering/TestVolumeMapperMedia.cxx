@@ -46,6 +46,24 @@ vtkSmartPointer<vtkImageData> MakeComponents(int count, double most = 1.0)
   return image;
 }
 
+/// A ball that can be lit. Nothing is at the volume's border, where VTK's gradients are half as large across.
+vtkSmartPointer<vtkVolumeProperty> MakeBallProperty()
+{
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
+  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.8);
+  opacity->AddPoint(0.3, 0.4);
+  opacity->AddPoint(0.44, 0.0);
+  auto property = vtkSmartPointer<vtkVolumeProperty>::New();
+  property->SetInterpolationTypeToLinear();
+  property->SetColor(colors);
+  property->SetScalarOpacity(opacity);
+  property->SetScalarOpacityUnitDistance(4.0);
+  return property;
+}
+
 TEST_F(VolumeMapper, StandsInForTheRayCastMapper)
 {
   vtkNew<vtkColorTransferFunction> colors;
@@ -141,22 +159,10 @@ TEST_F(VolumeMapper, BlendsAsTheRayCastMapper)
 
 TEST_F(VolumeMapper, IsShadedAsTheRayCastMapper)
 {
-  vtkNew<vtkColorTransferFunction> colors;
-  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
-  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
-  vtkNew<vtkPiecewiseFunction> opacity;
-  // Nothing at the volume's border, where VTK's gradients are half as large across.
-  opacity->AddPoint(0.0, 0.8);
-  opacity->AddPoint(0.3, 0.4);
-  opacity->AddPoint(0.44, 0.0);
   vtkNew<vtkPiecewiseFunction> gradientOpacity;
   gradientOpacity->AddPoint(0.0, 0.0);
   gradientOpacity->AddPoint(0.1, 0.5);
-  vtkNew<vtkVolumeProperty> property;
-  property->SetInterpolationTypeToLinear();
-  property->SetColor(colors);
-  property->SetScalarOpacity(opacity);
-  property->SetScalarOpacityUnitDistance(4.0);
+  const auto property = MakeBallProperty();
   property->SetAmbient(0.2);
   property->SetDiffuse(0.7);
   property->SetSpecular(0.4);
@@ -183,18 +189,7 @@ TEST_F(VolumeMapper, IsShadedAsTheRayCastMapper)
 /// Lamps that are no headlight, ambient light of lamps, and light from one side only.
 TEST_F(VolumeMapper, IsLitAsTheRayCastMapper)
 {
-  vtkNew<vtkColorTransferFunction> colors;
-  colors->AddRGBPoint(0.0, 0.9, 0.2, 0.1);
-  colors->AddRGBPoint(0.5, 0.2, 0.9, 0.3);
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(0.0, 0.8);
-  opacity->AddPoint(0.3, 0.4);
-  opacity->AddPoint(0.44, 0.0);
-  vtkNew<vtkVolumeProperty> property;
-  property->SetInterpolationTypeToLinear();
-  property->SetColor(colors);
-  property->SetScalarOpacity(opacity);
-  property->SetScalarOpacityUnitDistance(4.0);
+  const auto property = MakeBallProperty();
   property->ShadeOn();
   property->SetAmbient(0.5);
   property->SetDiffuse(0.7);

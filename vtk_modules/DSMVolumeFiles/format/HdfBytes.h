@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace vol
@@ -21,6 +22,12 @@ constexpr std::uint64_t HdfUndefined = UINT64_MAX;
 class HdfBytes
 {
 public:
+  HdfBytes() = default;
+  explicit HdfBytes(std::vector<std::byte> values)
+    : Values(std::move(values))
+  {
+  }
+
   /// Returns nothing where the file ends before, or where no structure is as large as `count`.
   static std::optional<HdfBytes> Read(
     const PositionedFile& file, std::uint64_t offset, std::uint64_t count);

@@ -99,24 +99,16 @@ bool IsWhole(hid_t attribute, std::size_t count, const std::string& path)
   // A reference to an object is its address.
   const std::size_t width = H5Tget_class(type.Get()) == H5T_STRING ? 1 : addressBytes;
   const std::size_t bytes = LengthBytes + addressBytes + IndexBytes;
-  const std::vector<std::byte> elements = ReadElements(attribute, count, bytes);
+  const HdfBytes elements(ReadElements(attribute, count, bytes));
   const PositionedFile whole(path);
-  for (std::size_t at = 0; at < elements.size(); at += bytes)
+  for (std::size_t at = 0; at < elements.GetCount(); at += bytes)
   {
-    const auto get = [&](std::size_t place, std::size_t size)
-    {
-      std::uint64_t number = 0;
-      for (std::size_t byte = size; byte-- > 0;)
-      {
-        number = number << 8 | std::to_integer<std::uint64_t>(elements[at + place + byte]);
-      }
-      return number;
-    };
-    const std::uint64_t address = get(LengthBytes, addressBytes);
+    const std::uint64_t address = elements.Get(at + LengthBytes, addressBytes);
     if (address != 0 && // else the list is empty
       (before + address < address ||
-        !HasObject(whole, before + address, sizeBytes, get(LengthBytes + addressBytes, IndexBytes),
-          width * get(0, LengthBytes))))
+        !HasObject(whole, before + address, sizeBytes,
+          elements.Get(at + LengthBytes + addressBytes, IndexBytes),
+          width * elements.Get(at, LengthBytes))))
     {
       return false;
     }

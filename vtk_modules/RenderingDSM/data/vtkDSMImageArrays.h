@@ -65,7 +65,7 @@ public:
     bool IsUsable() const { return this->Found == State::Usable; }
   };
 
-  /// Thrown for an array that does not exist. The text is empty if a hidden part has it, which is no fault.
+  /// Thrown for an array that does not exist. The text is empty if a hidden part has the array: then there is no error.
   class Missing : public dsm::Error
   {
   public:

@@ -110,8 +110,7 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
         this->Messages.push_back(
           "The mapper does not draw volumes in the blend mode Slice, so nothing is "
           "drawn. Call SetBlendMode() with another one, or use VTK's own mapper. In ParaView, "
-          "choose "
-          "another Blend Mode, or the representation DSM Slices.");
+          "choose another Blend Mode, or the representation DSM Slices.");
         return;
       }
       rt::SceneMedium medium = make(field, clipping);
