@@ -120,7 +120,7 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
       return [function = vtkDSMTranslation::ToTransferFunction(
                 property, component, weight, first, last, cellLength, diagonal),
                look = vtkDSMTranslation::ToMediumLook(property, component, last - first)](
-               const AnyField& any, const rt::ClipRegion& clipping)
+               const rt::AnyField& any, const rt::ClipRegion& clipping)
       {
         return std::visit(
           [&](const auto& field) -> rt::SceneMedium {
@@ -132,7 +132,7 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
     case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
       return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last),
                isMinimum = mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND](
-               const AnyField& any, const rt::ClipRegion& clipping)
+               const rt::AnyField& any, const rt::ClipRegion& clipping)
       {
         return std::visit(
           [&](const auto& field) -> rt::SceneMedium {
@@ -148,7 +148,7 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
       const auto function = vtkDSMTranslation::ToSum(property, first, last,
         isMean ? averaged : std::array<double, 2>{ first, last },
         isMean ? cellLength : property->GetScalarOpacityUnitDistance(0));
-      return [=](const AnyField& any, const rt::ClipRegion& clipping)
+      return [=](const rt::AnyField& any, const rt::ClipRegion& clipping)
       {
         return std::visit(
           [&](const auto& field) -> rt::SceneMedium {

@@ -2,6 +2,7 @@
 #ifndef vtkDSMVolumeLook_h
 #define vtkDSMVolumeLook_h
 
+#include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMVolumeData.h"
 #include "vtkDSMVolumeMapper.h"
@@ -62,10 +63,8 @@ public:
     const std::optional<int>& component) const;
   /// Returns whether another array defines the density of the medium.
   bool HasOpacityArray() const;
-  /// A field of any kind that a volume may have.
-  using AnyField = std::variant<rt::LatticeField, rt::LevelField>;
   /// Makes the medium that has the values of a field, within a region.
-  using MediumMaker = std::function<rt::SceneMedium(const AnyField&, const rt::ClipRegion&)>;
+  using MediumMaker = std::function<rt::SceneMedium(const rt::AnyField&, const rt::ClipRegion&)>;
   /// Returns the maker for the blend mode. Expensive: keep the result as long as the key is the
   /// same. Empty if the blend mode is not supported.
   static MediumMaker GetMediumMaker(const MediumKey& key);
