@@ -197,17 +197,11 @@ void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, 
   }
 }
 
-/// From a surface to a light, or to a random place on it.
 Ray ArrivingLight::GetLightRay(const Incidence& incidence, LightPath& path) const
 {
   Ray ray;
   ray.Origin = path.Point.Position;
-  ray.Direction = -incidence.Direction;
-  if (this->World.Transport.LightRadius > 0.0)
-  {
-    ray.Direction =
-      Directions(ray.Direction).GetInCone(this->World.Transport.LightRadius, path.Random);
-  }
+  ray.Direction = AimAt(incidence, this->World.Transport.LightRadius, path.Random);
   ray.Min = path.Point.Clearance;
   ray.Max = incidence.Distance;
   ++path.LightRays;

@@ -205,9 +205,7 @@ void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
       [&](Ray& ray, LightPath& path, const glm::dvec3&)
       {
         const Incidence incidence = GetIncidence(lamp, ray.Origin);
-        ray.Direction = radius > 0.0
-          ? Directions(-incidence.Direction).GetInCone(radius, path.Random)
-          : -incidence.Direction;
+        ray.Direction = AimAt(incidence, radius, path.Random);
         ray.Max = incidence.Distance;
       },
       [](Place& place, const glm::dvec3& transmittance) { place.Lamps.push_back(transmittance); });

@@ -13,30 +13,19 @@ namespace
 
 void Add(ObjectDigest& digest, const Light& light)
 {
-  digest.Add(light.Type);
-  digest.Add(light.IsLoneHeadlight);
-  digest.Add(light.Position);
-  digest.Add(light.Direction);
-  digest.Add(light.Color);
-  digest.Add(light.AmbientColor);
-  digest.Add(light.ConeCosine);
-  digest.Add(light.Exponent);
-  digest.Add(light.Attenuation);
+  const auto& [type, isLoneHeadlight, position, direction, color, ambientColor, coneCosine,
+    exponent, attenuation] = light;
+  digest.AddAll(type, isLoneHeadlight, position, direction, color, ambientColor, coneCosine,
+    exponent, attenuation);
 }
 
 void Add(ObjectDigest& digest, const LightTransport& transport)
 {
-  digest.Add(transport.Shadows);
-  digest.Add(transport.TwoSided);
-  digest.Add(transport.FaintShadows);
-  digest.Add(transport.LightRadius);
-  digest.Add(transport.AmbientOcclusionSamples);
-  digest.Add(transport.AmbientOcclusionDistance);
-  digest.Add(transport.Surroundings.Up);
-  digest.Add(transport.Surroundings.Lower);
-  digest.Add(transport.Surroundings.Upper);
-  digest.Add(transport.MaxBounces);
-  digest.Add(transport.Background);
+  const auto& [shadows, twoSided, faintShadows, lightRadius, occlusionSamples, occlusionDistance,
+    surroundings, maxBounces, background] = transport;
+  const auto& [up, lower, upper] = surroundings;
+  digest.AddAll(shadows, twoSided, faintShadows, lightRadius, occlusionSamples, occlusionDistance,
+    up, lower, upper, maxBounces, background);
 }
 
 } // namespace
@@ -44,23 +33,11 @@ void Add(ObjectDigest& digest, const LightTransport& transport)
 std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
 {
   ObjectDigest digest;
-  digest.Add(request.Width);
-  digest.Add(request.Height);
-  digest.Add(request.WorldToClip);
-  digest.Add(request.PixelSize);
-  digest.Add(request.TileSize);
-  digest.Add(request.Layers);
-  digest.Add(request.Limits != nullptr);
-  if (request.Limits)
-  {
-    digest.Add(*request.Limits);
-  }
-  digest.Add(request.MediumCuts != nullptr);
-  if (request.MediumCuts)
-  {
-    digest.Add(*request.MediumCuts);
-  }
-  digest.Add(request.Channels);
+  // The samples of a picture are added to one another, and its preview gives way to them.
+  const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, isPreview,
+    layers, limits, mediumCuts, channels, scheduling] = request;
+  digest.AddAll(
+    width, height, worldToClip, pixelSize, tileSize, layers, limits, mediumCuts, channels);
   Add(digest, scene.Transport);
   digest.Add(scene.View);
   digest.Add(scene.Lights.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/light/Shading.h"
 
+#include "DSMRayTracing/light/Directions.h"
+
 #include <cmath>
 #include <limits>
 
@@ -26,6 +28,12 @@ Incidence GetIncidence(const Light& light, const glm::dvec3& point)
     attenuation = cosine >= light.ConeCosine ? attenuation * std::pow(cosine, light.Exponent) : 0.0;
   }
   return { direction, distance, attenuation };
+}
+
+glm::dvec3 AimAt(const Incidence& incidence, double lightRadius, SampleSequence& random)
+{
+  const glm::dvec3 center = -incidence.Direction;
+  return lightRadius > 0.0 ? Directions(center).GetInCone(lightRadius, random) : center;
 }
 
 } // namespace rt

@@ -17,18 +17,10 @@ bool MeshObject::IsOpaque() const
 
 void MeshObject::AddTo(ObjectDigest& digest) const
 {
-  const MeshLook& look = this->Look;
-  digest.Add(this->Instance->GetMesh().Segment->GetNumber());
-  digest.Add(this->Instance->GetMeshToWorld());
-  digest.Add(this->Instance->Culling.Front);
-  digest.Add(this->Instance->Culling.Back);
-  digest.Add(look.ColoredBy);
-  digest.AddIf(look.Colors.get());
-  digest.Add(look.Flat);
-  digest.Add(look.Surface);
-  digest.Add(look.BackSurface);
-  digest.Add(look.Edges);
-  digest.AddIf(look.Picture.get());
+  digest.AddAll(this->Instance->GetMesh().Segment->GetNumber(), this->Instance->GetMeshToWorld(),
+    this->Instance->Culling.Front, this->Instance->Culling.Back);
+  const auto& [coloredBy, colors, picture, flat, surface, backSurface, edges] = this->Look;
+  digest.AddAll(coloredBy, colors, picture, flat, surface, backSurface, edges);
   digest.Add(this->Clipping);
 }
 

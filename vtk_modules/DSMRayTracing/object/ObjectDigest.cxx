@@ -6,79 +6,73 @@ namespace rt
 
 void ObjectDigest::Add(const Material& material)
 {
-  for (const float value : { material.Ambient, material.Diffuse, material.Specular,
-         material.SpecularPower, material.Opacity, material.Reflectivity })
-  {
-    this->Add(value);
-  }
-  this->Add(material.AmbientColor);
-  this->Add(material.DiffuseColor);
-  this->Add(material.SpecularColor);
-  this->Add(material.Lighting);
+  const auto& [ambient, diffuse, specular, specularPower, ambientColor, diffuseColor, specularColor,
+    opacity, reflectivity, lighting] = material;
+  this->AddAll(ambient, diffuse, specular, specularPower, ambientColor, diffuseColor, specularColor,
+    opacity, reflectivity, lighting);
 }
 
 void ObjectDigest::Add(const MediumLook& look)
 {
-  this->Add(look.Shade);
-  this->Add(look.Surface);
-  this->Add(look.Scattering);
-  this->Add(look.Anisotropy);
-  this->Add(look.Gradients != nullptr);
-  if (look.Gradients)
-  {
-    this->Add(look.Gradients->Last);
-    this->Add(look.Gradients->Factors);
-  }
+  const auto& [shade, surface, scattering, anisotropy, gradients] = look;
+  this->AddAll(shade, surface, scattering, anisotropy, gradients);
+}
+
+void ObjectDigest::Add(const GradientOpacity& gradients)
+{
+  const auto& [last, factors] = gradients;
+  this->AddAll(last, factors);
 }
 
 void ObjectDigest::Add(const ColorMap& map)
 {
-  this->Add(map.First);
-  this->Add(map.Last);
-  this->Add(map.Logarithmic);
-  this->Add(map.Table);
-  this->Add(map.Nodes);
-  this->Add(map.Below);
-  this->Add(map.Above);
-  this->Add(map.NotANumber);
-  this->Add(map.Categories);
+  const auto& [first, last, logarithmic, table, nodes, firstNode, below, above, notANumber,
+    categories] = map;
+  this->AddAll(
+    first, last, logarithmic, table, nodes, firstNode, below, above, notANumber, categories);
+}
+
+void ObjectDigest::Add(const ColorMap::Node& node)
+{
+  const auto& [value, color] = node;
+  this->AddAll(value, color);
+}
+
+void ObjectDigest::Add(const ColorMap::Category& category)
+{
+  const auto& [value, color] = category;
+  this->AddAll(value, color);
 }
 
 void ObjectDigest::Add(const ClipRegion& region)
 {
-  this->Add(region.HalfSpaces);
-  this->Add(region.Boxes);
+  const auto& [halfSpaces, boxes] = region;
+  this->AddAll(halfSpaces, boxes);
 }
 
 void ObjectDigest::Add(const ClipRegion::HalfSpace& half)
 {
-  this->Add(half.Normal);
-  this->Add(half.Point);
+  const auto& [normal, point] = half;
+  this->AddAll(normal, point);
 }
 
 void ObjectDigest::Add(const ClipRegion::Grid& boxes)
 {
-  this->Add(boxes.WorldToGrid);
-  this->Add(boxes.Lower);
-  this->Add(boxes.Upper);
-  this->Add(boxes.Kept);
+  const auto& [worldToGrid, lower, upper, kept] = boxes;
+  this->AddAll(worldToGrid, lower, upper, kept);
 }
 
 void ObjectDigest::Add(const EdgeLines& lines)
 {
-  this->Add(lines.Color);
-  this->Add(lines.Width);
-  this->Add(lines.Opacity);
+  const auto& [color, width, opacity] = lines;
+  this->AddAll(color, width, opacity);
 }
 
 void ObjectDigest::Add(const Texture& picture)
 {
-  this->Add(picture.Width);
-  this->Add(picture.Height);
-  this->Bytes.Add(picture.Texels.data(), picture.Texels.size());
-  this->Add(picture.Repeat);
-  this->Add(picture.Interpolate);
-  this->Add(picture.Transform);
+  const auto& [width, height, texels, repeat, interpolate, transform] = picture;
+  this->AddAll(width, height, repeat, interpolate, transform);
+  this->Bytes.Add(texels.data(), texels.size());
 }
 
 } // namespace rt

@@ -11,6 +11,7 @@
 #include "DSMRayTracing/ray/ClipRegion.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -20,10 +21,19 @@ namespace rt
 
 /// A number that descriptions of objects, and what else is added, share if, for all practical purposes,
 /// they are the same. Valid within one process.
+///
+/// A description of several members is taken apart by a structured binding: a new member does not compile until its
+/// digest has it, so none can be forgotten, which would leave an old picture.
 class ObjectDigest
 {
 public:
   std::uint64_t Get() const { return this->Bytes.Get(); }
+
+  template <class... Values>
+  void AddAll(const Values&... values)
+  {
+    (this->Add(values), ...);
+  }
 
   /// Only types without padding.
   template <class T>
@@ -40,6 +50,12 @@ public:
     {
       this->Add(value);
     }
+  }
+  /// Adds what it points to, or that it is null.
+  template <class T>
+  void Add(const std::shared_ptr<T>& value)
+  {
+    this->AddIf(value.get());
   }
   template <class T>
   void Add(const std::optional<T>& value)
@@ -59,7 +75,10 @@ public:
 
   void Add(const Material& material);
   void Add(const MediumLook& look);
+  void Add(const GradientOpacity& gradients);
   void Add(const ColorMap& map);
+  void Add(const ColorMap::Node& node);
+  void Add(const ColorMap::Category& category);
   void Add(const ClipRegion& region);
   void Add(const ClipRegion::HalfSpace& half);
   void Add(const ClipRegion::Grid& boxes);

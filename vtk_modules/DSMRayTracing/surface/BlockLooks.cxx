@@ -116,9 +116,9 @@ void BlockLooks::AddTo(ObjectDigest& digest) const
   digest.Add(this->Blocks.size());
   for (const Block& block : this->Blocks)
   {
-    digest.Add(block.Cells);
-    digest.Add(block.Appearance.Color);
-    digest.Add(block.Appearance.Opacity);
+    const auto& [cells, appearance] = block;
+    const auto& [color, opacity] = appearance;
+    digest.AddAll(cells, color, opacity);
   }
 }
 

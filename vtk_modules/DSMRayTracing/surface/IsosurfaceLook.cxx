@@ -44,19 +44,14 @@ bool IsosurfaceLook::IsAlikeEverywhere() const
 
 void IsosurfaceLook::AddTo(ObjectDigest& digest) const
 {
-  digest.Add(this->Opacities);
-  digest.Add(this->Colors);
-  digest.Add(this->ColoredBy);
-  digest.Add(this->Surface);
-  digest.Add(this->BackSurface);
-  digest.Add(this->CullsFront);
-  digest.Add(this->CullsBack);
-  digest.Add(this->Blocks != nullptr);
-  if (this->Blocks)
+  const auto& [opacities, colors, coloredBy, surface, backSurface, cullsFront, cullsBack, blocks,
+    flat] = *this;
+  digest.AddAll(opacities, colors, coloredBy, surface, backSurface, cullsFront, cullsBack,
+    blocks != nullptr, flat);
+  if (blocks)
   {
-    this->Blocks->AddTo(digest);
+    blocks->AddTo(digest);
   }
-  digest.Add(this->Flat);
 }
 
 } // namespace rt
