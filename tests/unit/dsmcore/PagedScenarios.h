@@ -182,6 +182,13 @@ inline void PagedCacheHoldsOneBrick(dsm::Messenger& messenger, const Way& way)
   EXPECT_EQ(counters.BytesReceived, (counters.Workers.Misses - counters.Workers.Joins) * bytes);
 }
 
+inline void PagedCacheHoldsTwoBricks(dsm::Messenger& messenger, const Way& way)
+{
+  dsm::PagedStore store(messenger, way.GetSettings(2 * GetPage(), 8));
+  ReadRandomPairs(messenger, store, 512);
+  EXPECT_LE(store.GetCounters().PeakCachedBytes, 2 * GetPage());
+}
+
 /// What a thread reads stays right although the block is evicted under its hands.
 inline void PagedBlocksAreEvictedWhileTheyAreRead(dsm::Messenger& messenger, const Way& way)
 {

@@ -267,6 +267,18 @@ TEST(BlockStore, MoreCopiesThanTheMemoryHoldsAreRefusedWithTheNumberOfBytes)
     });
 }
 
+TEST(ReplicatedStore, PairsAreHere)
+{
+  dsm_test::RunRanks(3,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::ReplicatedStore::Settings settings;
+      settings.Workers = 4;
+      dsm::ReplicatedStore store(messenger, settings);
+      dsm_test::ReadRandomPairs(messenger, store, 512);
+    });
+}
+
 TEST(ReplicatedStore, WithinAFrameNothingIsRearranged)
 {
   dsm_test::RunRanks(1,
@@ -398,6 +410,20 @@ TEST(MemoryPlan, RankCountThatWouldDo)
 }
 
 /// Once over the blocks for all ranks: what each rank would count of its own.
+TEST(MemoryPlan, PairsNeedRoomForOneBlockMore)
+{
+  auto directory = dsm_test::MakeDirectory(2, 10, 1024);
+  const auto getNeed = [&]
+  {
+    const dsm::MemoryPlan plan({ &directory }, dsm::HostGroups::Separate(2),
+      std::vector<Budget>(2, Budget{ 1 << 20, 1 << 20 }), 4096);
+    return plan.GetNeed(dsm::MemoryOrganization::ObjectBased, 0);
+  };
+  const std::uint64_t before = getNeed();
+  directory.SetPaired();
+  EXPECT_EQ(getNeed(), before + 1024);
+}
+
 TEST(MemoryPlan, CopiesAreThoseOfTheHolders)
 {
   const dsm::HostGroups groups({ 0, 1, 0, 3, 1, 0, 1, 1, 3 }); // of 3, 4 and 2 ranks

@@ -95,14 +95,21 @@ std::size_t BlockFetcher::GetRoomForOwn() const
   return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
 }
 
+bool BlockFetcher::IsAnyPaired() const
+{
+  return std::any_of(this->Segments.begin(), this->Segments.end(),
+    [](const auto& segment) { return segment->GetDirectory().IsPaired(); });
+}
+
 void BlockFetcher::CheckCache(std::size_t cacheBytes, std::size_t largest) const
 {
-  const std::size_t footprint = this->CountFootprint(largest);
+  const bool isPair = this->IsAnyPaired();
+  const std::size_t footprint = (isPair ? 2 : 1) * this->CountFootprint(largest);
   const std::size_t own = this->GetRoomForOwn();
   if (largest > 0 && cacheBytes < footprint + own)
   {
-    throw Error("The cache of " + std::to_string(cacheBytes) +
-      " bytes is smaller than one brick (" + std::to_string(footprint) + " bytes)" +
+    throw Error("The cache of " + std::to_string(cacheBytes) + " bytes is smaller than " +
+      (isPair ? "two bricks" : "one brick") + " (" + std::to_string(footprint) + " bytes)" +
       (own > 0 ? " plus one brick that the rank owns (" + std::to_string(own) + " bytes)" : "") +
       ". Raise the cache size (DSMCacheSize).");
   }

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -169,10 +170,10 @@ protected:
   /// whether the block is here now. If not, the worker has to call Want, if the frame is still open, because
   /// others may wait by now.
   bool ReadAtOnce(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock);
-  /// A worker misses a block, and waits until it is here or the frame is open no more. `keeps`: the
-  /// block stays until the worker has its slot back.
-  void WaitFor(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock,
-    WorkerSlots* slots, bool keeps);
+  /// A worker misses a block, or one or both of a pair, and waits until all are here or the frame is open no more. Those
+  /// that are here stay meanwhile. `keeps`: all stay until the worker has its slot back.
+  void WaitFor(FetchWorker& worker, std::initializer_list<BlockWant> blocks,
+    std::unique_lock<std::mutex>& lock, WorkerSlots* slots, bool keeps);
   /// Throws why a block cannot be had now.
   [[noreturn]] void Refuse(const BlockSegment& segment) const;
   std::size_t GetFootprint(const BlockWant& block) const
@@ -181,8 +182,10 @@ protected:
   }
   /// Room for this rank's own blocks while others are on their way.
   std::size_t GetRoomForOwn() const;
-  /// Throws Error when a cache of so many bytes cannot hold the largest block that comes and goes, of so many bytes,
-  /// and one of the rank's own.
+  /// Returns whether workers read blocks of any segment in pairs.
+  bool IsAnyPaired() const;
+  /// Throws Error when a cache of so many bytes cannot hold the largest block that comes and goes, of so many bytes, or a
+  /// pair of such, and one of the rank's own.
   void CheckCache(std::size_t cacheBytes, std::size_t largest) const;
   bool IsOpenFor(const BlockSegment& segment) const
   {

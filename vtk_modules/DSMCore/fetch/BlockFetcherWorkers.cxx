@@ -5,8 +5,10 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/base/NanosecondsSince.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -122,24 +124,38 @@ bool BlockFetcher::ReadAtOnce(
   return true;
 }
 
-void BlockFetcher::WaitFor(FetchWorker& worker, const BlockWant& block,
+void BlockFetcher::WaitFor(FetchWorker& worker, std::initializer_list<BlockWant> blocks,
   std::unique_lock<std::mutex>& lock, WorkerSlots* slots, bool keeps)
 {
   const auto start = std::chrono::steady_clock::now();
-  LineStatus& line = this->GetLine(block);
-  ++worker.Slow.Misses;
-  worker.Slow.Joins += this->Want(block) ? 1 : 0;
-  ++line.Waiters;
-  worker.WaitsFor = &line;
+  const LineStatus** next = worker.WaitsFor;
+  for (const BlockWant& block : blocks)
+  {
+    LineStatus& line = this->GetLine(block);
+    if (!line.IsHere())
+    {
+      ++worker.Slow.Misses;
+      worker.Slow.Joins += this->Want(block) ? 1 : 0;
+    }
+    ++line.Waiters;
+    *next++ = &line;
+  }
+  const auto areHere = [&]
+  {
+    return std::all_of(blocks.begin(), blocks.end(),
+      [this](const BlockWant& block) { return this->GetLine(block).IsHere(); });
+  };
   const auto leave = [&]
   {
-    worker.WaitsFor = nullptr;
-    --line.Waiters;
+    std::fill(std::begin(worker.WaitsFor), std::end(worker.WaitsFor), nullptr);
+    for (const BlockWant& block : blocks)
+    {
+      --this->GetLine(block).Waiters;
+    }
   };
   this->Messages.WakeUp();
   WaitWithoutSlot(
-    slots, lock, worker.Woken,
-    [&] { return line.State == LineState::Cached || this->Phase != FramePhase::Open; },
+    slots, lock, worker.Woken, [&] { return this->Phase != FramePhase::Open || areHere(); },
     [&]
     {
       if (!keeps)

@@ -60,7 +60,7 @@ void FetchWorkers::WakeThoseThatWaitFor(const LineStatus& line) const
 {
   for (const auto& worker : this->Workers)
   {
-    if (worker->WaitsFor == &line)
+    if (worker->WaitsFor[0] == &line || worker->WaitsFor[1] == &line)
     {
       worker->Woken.notify_one();
     }

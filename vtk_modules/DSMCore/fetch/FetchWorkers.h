@@ -30,7 +30,8 @@ struct FetchWorker
 
   // Under the store's lock.
   WorkerCounters Slow; ///< all but Accesses and Hits
-  const LineStatus* WaitsFor = nullptr;
+  /// What the worker waits for: a block, or a pair of them; else null.
+  const LineStatus* WaitsFor[2] = {};
   std::condition_variable Woken;
 };
 

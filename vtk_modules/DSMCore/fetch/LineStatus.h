@@ -48,6 +48,13 @@ struct LineStatus
   std::atomic<BlockUse> Use{ BlockUse::Idle };
   LineState State = LineState::Absent;
 
+  /// Returns whether the block can be read.
+  bool IsHere() const
+  {
+    return this->State == LineState::Cached || this->State == LineState::Owned ||
+      this->State == LineState::Shared || this->State == LineState::Replica;
+  }
+
   /// Throws Error when there is no way from the present state to `next`.
   void MoveTo(LineState next)
   {

@@ -108,6 +108,9 @@ public:
   /// absent. Throws Error after Cancel, and for another rank's block when the worker has not
   /// entered, outside of a frame, and when the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+  /// The same for two blocks. Either may be evicted while the other is waited for, and then faults when it is read.
+  std::pair<Pin, Pin> AcquirePair(Worker& worker, const BlockSegment& segment, BlockId id,
+    const BlockSegment& otherSegment, BlockId otherId);
 
   /// See ObjectStore. With Settings::PureFaulting nothing is prefetched, as in the paper.
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
@@ -254,6 +257,12 @@ inline PagedStore::Pin PagedStore::Acquire(Worker& worker, const BlockSegment& s
     return this->Admit(worker, self, id);
   }
   return Pin(reinterpret_cast<const std::byte*>(entry - recent), self, id);
+}
+
+inline std::pair<PagedStore::Pin, PagedStore::Pin> PagedStore::AcquirePair(Worker& worker,
+  const BlockSegment& segment, BlockId id, const BlockSegment& otherSegment, BlockId otherId)
+{
+  return { this->Acquire(worker, segment, id), this->Acquire(worker, otherSegment, otherId) };
 }
 
 } // namespace dsm

@@ -79,7 +79,7 @@ void PagedStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId
   }
   // The block may be evicted while the worker waits for a slot: who has the slots may wait for room, in a
   // fault, and would keep them for ever. It is fetched again then, by the fault of who reads it.
-  this->WaitFor(worker, { &segment, id }, lock, this->Current.Slots.get(), false);
+  this->WaitFor(worker, { { &segment, id } }, lock, this->Current.Slots.get(), false);
   if (this->Phase != FramePhase::Open)
   {
     this->Refuse(segment);

@@ -31,6 +31,8 @@ MemoryPlan::MemoryPlan(std::vector<const BlockDirectory*> segments, const HostGr
       [](const BlockDirectory* directory) { return directory->IsFromSource(); }))
   , AnyOnOwnersDisk(std::any_of(this->Segments.begin(), this->Segments.end(),
       [](const BlockDirectory* directory) { return directory->IsOnOwnersDisk(); }))
+  , AnyPaired(std::any_of(this->Segments.begin(), this->Segments.end(),
+      [](const BlockDirectory* directory) { return directory->IsPaired(); }))
   , Blocks(BlockAlignment)
   , Pages(page)
   , Copies(this->Budgets.size(), 0)
@@ -133,8 +135,7 @@ std::uint64_t MemoryPlan::GetNeed(MemoryOrganization organization, int rank) con
 
 std::uint64_t MemoryPlan::GetLeastRoom(const Sums& sums) const
 {
-  const bool alone = this->Budgets.size() == 1; // nobody is to be answered
-  return sums.Largest * (alone ? 1 : LeastRoom + (this->AnyFromSource ? 1 : 0));
+  return sums.Largest * this->GetLeastBlocks(this->Budgets.size() == 1);
 }
 
 bool MemoryPlan::Fetches(MemoryOrganization organization) const
@@ -200,8 +201,7 @@ int MemoryPlan::FindRankCount(MemoryOrganization organization) const
     least = std::min(least, budget.Limit);
   }
   const Sums& sums = this->GetSums(organization);
-  const std::uint64_t besides =
-    sums.Tables + (LeastRoom + (this->AnyFromSource ? 1 : 0)) * sums.Largest;
+  const std::uint64_t besides = sums.Tables + this->GetLeastBlocks(false) * sums.Largest;
   if (least < besides)
   {
     return 0;
@@ -280,7 +280,9 @@ void MemoryPlan::Refuse(MemoryOrganization organization, int rank) const
   const std::uint64_t limit = replicated ? budget.Bytes : budget.Limit;
   const bool looksEqual = FormatMebibytes(need) == FormatMebibytes(limit);
   text += FormatMebibytes(need) + " (" + std::to_string(need) + " bytes" +
-    (replicated || allOnDisk ? "" : ", including a cache of one brick and messages") +
+    (replicated || allOnDisk ? ""
+                             : std::string(", including a cache of ") +
+          (this->AnyPaired ? "two bricks" : "one brick") + " and messages") +
     ") of rank " + std::to_string(rank) + "'s memory. The limit is " + FormatMebibytes(limit) +
     (looksEqual ? " (" + std::to_string(limit) + " bytes)" : "") +
     ". Raise the memory per rank (DSMMemory), " +

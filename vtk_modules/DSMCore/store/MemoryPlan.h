@@ -74,9 +74,14 @@ public:
   int FindRankCount(MemoryOrganization organization) const;
 
 private:
-  /// Blocks that there must be room for where they are fetched: in the cache, in a reply to another
-  /// rank, and in a message that has come and is being put into the cache.
-  static constexpr std::uint64_t LeastRoom = 3;
+  /// Returns the number of blocks that there must be room for where they are fetched: in the cache, in a reply to
+  /// another rank, and in a message that has come and is being put into the cache; one more in the cache if workers
+  /// read pairs, and one of the rank's own if sources bring blocks. Without other ranks: in the cache only.
+  std::uint64_t GetLeastBlocks(bool isAlone) const
+  {
+    const std::uint64_t cached = this->AnyPaired ? 2 : 1;
+    return isAlone ? cached : cached + 2 + (this->AnyFromSource ? 1 : 0);
+  }
 
   /// Sizes of the blocks in memory, in units of BlockAlignment or of pages.
   struct Sums
@@ -115,6 +120,7 @@ private:
   bool OneGroup;
   bool AnyFromSource;
   bool AnyOnOwnersDisk;
+  bool AnyPaired;
   std::size_t LargestGroup = 0; ///< the most ranks that share a host's memory
   Sums Blocks;
   Sums Pages;

@@ -40,6 +40,8 @@ class StoreInterface
 
   // Blocks, on a worker's thread.
   static_assert(Is<Pin, decltype(Get().Acquire(GetWorker(), GetSegment(), BlockId()))>);
+  static_assert(Is<std::pair<Pin, Pin>,
+    decltype(Get().AcquirePair(GetWorker(), GetSegment(), BlockId(), GetSegment(), BlockId()))>);
   static_assert(Is<const std::byte*, decltype(std::declval<const Pin&>().GetData())>);
   static_assert(Is<std::size_t, decltype(std::declval<const Pin&>().GetBytes())>);
   static_assert(std::is_move_constructible_v<Pin>, "it is returned");

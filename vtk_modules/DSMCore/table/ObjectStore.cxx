@@ -104,6 +104,12 @@ const std::byte* ObjectStore::Wait(Worker& worker, const Segment& segment, Block
   return this->Self->Wait(worker, segment, id);
 }
 
+std::array<const std::byte*, 2> ObjectStore::WaitForPair(
+  Worker& worker, const Segment& segment, BlockId id, const Segment& otherSegment, BlockId otherId)
+{
+  return this->Self->WaitForPair(worker, { &segment, id }, { &otherSegment, otherId });
+}
+
 bool ObjectStore::Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
   FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors)
 {

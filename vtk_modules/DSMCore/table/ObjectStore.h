@@ -17,6 +17,7 @@
 #include "DSMCore/table/BlockTable.h"
 #include "DSMCore/transport/Messenger.h"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -36,7 +37,9 @@ namespace dsm
 ///
 /// Threads: the communication thread publishes, seals, retires and services; workers Acquire.
 /// A worker may hold a pin only while it does not Acquire another block: a worker that waits holds
-/// nothing, so a cache of one block is enough for any number of workers to go on.
+/// nothing, so a cache of one block is enough for any number of workers to go on. Two blocks at once are acquired
+/// together (AcquirePair). Of a pair, the block that is here stays while the worker waits for the other; only so many
+/// workers wait for pairs at a time that room for one block is left. So a cache of two blocks is enough then.
 ///
 /// Several stores may share a messenger; one of them at a time has a frame open.
 class ObjectStore : public FetchingStore
@@ -105,6 +108,10 @@ public:
   /// The pin is valid until it goes out of scope. Throws Error after Cancel, and when it would have
   /// to wait while the worker holds another pin, has not entered, or the segment was retired.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+  /// The same for two blocks of segments whose directories are paired (BlockDirectory::SetPaired). Both that are absent
+  /// are fetched at the same time.
+  std::pair<Pin, Pin> AcquirePair(Worker& worker, const BlockSegment& segment, BlockId id,
+    const BlockSegment& otherSegment, BlockId otherId);
 
   /// Worker: it will probably need these blocks soon, the likeliest first. Where the bytes of those that are absent
   /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is advised
@@ -127,6 +134,11 @@ private:
 
   /// The way of a miss; waits for the block's bytes.
   const std::byte* Wait(Worker& worker, const Segment& segment, BlockId id);
+  /// The same for a pair.
+  std::array<const std::byte*, 2> WaitForPair(Worker& worker, const Segment& segment, BlockId id,
+    const Segment& otherSegment, BlockId otherId);
+  /// Counts an access. Returns the block's bytes; null when it is absent.
+  static const std::byte* Look(Worker& worker, BlockLine& line);
   /// Passes a quiescent point, the epoch having moved.
   void Announce(Worker& worker);
 
@@ -195,24 +207,45 @@ private:
   Worker* Holder;
 };
 
+inline const std::byte* ObjectStore::Look(Worker& worker, BlockLine& line)
+{
+  worker.Accesses.store(
+    worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  const std::byte* const address = line.Address.load(std::memory_order_acquire);
+  // Tested first: a store on every hit would take the line away from the other workers' caches.
+  if (address && line.Use.load(std::memory_order_relaxed) != BlockUse::Recent)
+  {
+    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
+  }
+  return address;
+}
+
 inline ObjectStore::Pin ObjectStore::Acquire(
   Worker& worker, const BlockSegment& segment, BlockId id)
 {
   const Segment& self = static_cast<const Segment&>(segment);
   BlockLine& line = self.Lines[id];
-  worker.Accesses.store(
-    worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-  const std::byte* address = line.Address.load(std::memory_order_acquire);
+  const std::byte* address = Look(worker, line);
   if (!address)
   {
     address = this->Wait(worker, self, id);
   }
-  // Tested first: a store on every hit would take the line away from the other workers' caches.
-  else if (line.Use.load(std::memory_order_relaxed) != BlockUse::Recent)
-  {
-    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
-  }
   return Pin(address, line.Bytes, worker);
+}
+
+inline std::pair<ObjectStore::Pin, ObjectStore::Pin> ObjectStore::AcquirePair(Worker& worker,
+  const BlockSegment& segment, BlockId id, const BlockSegment& otherSegment, BlockId otherId)
+{
+  const Segment& one = static_cast<const Segment&>(segment);
+  const Segment& other = static_cast<const Segment&>(otherSegment);
+  BlockLine& line = one.Lines[id];
+  BlockLine& otherLine = other.Lines[otherId];
+  std::array<const std::byte*, 2> addresses{ Look(worker, line), Look(worker, otherLine) };
+  if (!addresses[0] || !addresses[1])
+  {
+    addresses = this->WaitForPair(worker, one, id, other, otherId);
+  }
+  return { Pin(addresses[0], line.Bytes, worker), Pin(addresses[1], otherLine.Bytes, worker) };
 }
 
 inline void ObjectStore::Quiesce(Worker& worker)

@@ -45,7 +45,7 @@ void ObjectStore::Internals::Leave(Worker& worker)
   this->Messages.WakeUp(); // memory may have come free
 }
 
-const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId id)
+void ObjectStore::Internals::CheckMiss(const Worker& worker)
 {
   if (worker.Pins != 0)
   {
@@ -56,6 +56,21 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
     throw Error(
       "A worker missed a block before it entered the frame. This is a bug in the tracer.");
   }
+}
+
+void ObjectStore::Internals::CheckOpen(Worker& worker, const BlockWant& block)
+{
+  if (!this->IsOpenFor(*block.From))
+  {
+    ++worker.Slow.Misses;
+    this->Refuse(*block.From);
+  }
+}
+
+const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& segment, BlockId id)
+{
+  CheckMiss(worker);
+  const BlockWant block{ &segment, id };
   BlockLine& line = segment.Lines[id];
   std::unique_lock<std::mutex> lock(this->Guard);
   if (const std::byte* const address = line.Address.load(std::memory_order_relaxed))
@@ -63,21 +78,12 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
     line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
     return address; // it came in the meantime: a hit after all
   }
-  const auto check = [&]
-  {
-    if (!this->IsOpenFor(segment))
-    {
-      ++worker.Slow.Misses;
-      this->Refuse(segment);
-    }
-  };
-  check();
+  this->CheckOpen(worker, block);
   worker.Epoch.store(Worker::Offline, std::memory_order_release);
-  const BlockWant block{ &segment, id };
   if (!this->ReadAtOnce(worker, block, lock))
   {
-    check();
-    this->WaitFor(worker, block, lock, this->Current.Slots.get(), true);
+    this->CheckOpen(worker, block);
+    this->WaitFor(worker, { block }, lock, this->Current.Slots.get(), true);
   }
   // Online again under the lock: from now on the block may be evicted, but its memory waits for this
   // worker.
@@ -89,6 +95,69 @@ const std::byte* ObjectStore::Internals::Wait(Worker& worker, const Segment& seg
     this->Refuse(segment);
   }
   return address;
+}
+
+std::array<const std::byte*, 2> ObjectStore::Internals::WaitForPair(
+  Worker& worker, const BlockWant& one, const BlockWant& other)
+{
+  CheckMiss(worker);
+  if (!one.From->GetDirectory().IsPaired() || !other.From->GetDirectory().IsPaired())
+  {
+    throw Error("A worker requested two blocks that are not paired. This is a bug in the tracer.");
+  }
+  const auto areHere = [&] { return this->GetLine(one).IsHere() && this->GetLine(other).IsHere(); };
+  std::unique_lock<std::mutex> lock(this->Guard);
+  if (!areHere())
+  {
+    this->CheckOpen(worker, one);
+    this->CheckOpen(worker, other);
+    worker.Epoch.store(Worker::Offline, std::memory_order_release);
+    for (const BlockWant& block : { one, other })
+    {
+      if (!this->GetLine(block).IsHere())
+      {
+        this->ReadAtOnce(worker, block, lock);
+      }
+    }
+    if (!areHere())
+    {
+      this->WaitInTurn(worker, one, other, lock);
+    }
+    // As in Wait.
+    worker.Epoch.store(
+      this->Store.Epoch.load(std::memory_order_relaxed), std::memory_order_release);
+  }
+  std::array<const std::byte*, 2> addresses;
+  for (std::size_t index = 0; index < addresses.size(); ++index)
+  {
+    const BlockWant& block = index == 0 ? one : other;
+    BlockLine& line = GetBlockLine(block);
+    addresses[index] = line.Address.load(std::memory_order_relaxed);
+    if (!addresses[index])
+    {
+      this->Refuse(*block.From);
+    }
+    line.Use.store(BlockUse::Recent, std::memory_order_relaxed);
+  }
+  return addresses;
+}
+
+void ObjectStore::Internals::WaitInTurn(
+  Worker& worker, const BlockWant& one, const BlockWant& other, std::unique_lock<std::mutex>& lock)
+{
+  if (this->PairsWaiting == this->MostPairs)
+  {
+    WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
+      [this] { return this->PairsWaiting < this->MostPairs || this->Phase != FramePhase::Open; });
+  }
+  this->CheckOpen(worker, one);
+  this->CheckOpen(worker, other);
+  ++this->PairsWaiting;
+  this->WaitFor(worker, { one, other }, lock, this->Current.Slots.get(), true);
+  if (this->PairsWaiting-- == this->MostPairs)
+  {
+    this->Workers.WakeAll();
+  }
 }
 
 bool ObjectStore::Internals::MayPrefetch() const
@@ -252,6 +321,10 @@ void ObjectStore::Internals::Opened()
   this->Cache.Reclaim(this->GetOldestEpoch());
   this->Cache.ResetPeak();
   this->RoomForOthers = this->Cache.GetCapacity() - this->GetRoomForOwn();
+  // Each may keep one block that is here; one more has to fit, and one of the rank's own.
+  const std::size_t fitting =
+    footprint > 0 ? (this->Cache.GetCapacity() - this->GetRoomForOwn()) / footprint : 0;
+  this->MostPairs = std::max<std::size_t>(fitting, 2) - 1;
   this->Prefetches.BeginFrame(this->Cache.GetCapacity());
 }
 

@@ -6,8 +6,10 @@
 #include "DSMCore/table/BlockCache.h"
 #include "DSMCore/table/ObjectStore.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 namespace dsm
@@ -22,6 +24,8 @@ public:
   ~Internals() override;
 
   const std::byte* Wait(Worker& worker, const Segment& segment, BlockId id);
+  std::array<const std::byte*, 2> WaitForPair(
+    Worker& worker, const BlockWant& one, const BlockWant& other);
   bool MayPrefetch() const override;
   void Enter(Worker& worker);
   void Leave(Worker& worker);
@@ -67,12 +71,20 @@ private:
   bool BeginService() override;
   bool NeedsService() const override { return this->Cache.HasLimbo(); }
 
+  static void CheckMiss(const Worker& worker);
+  /// Throws when the blocks of a segment cannot be had now.
+  void CheckOpen(Worker& worker, const BlockWant& block);
+  /// Waits for both within the permits for pairs.
+  void WaitInTurn(Worker& worker, const BlockWant& one, const BlockWant& other,
+    std::unique_lock<std::mutex>& lock);
   std::uint64_t GetOldestEpoch() const;
   std::size_t GetLargestBlock() const;
 
   ObjectStore& Store;
   BlockCache Cache; ///< under the lock
   std::size_t SpareBytes = 0;
+  std::size_t PairsWaiting = 0; ///< workers that wait for pairs, and keep what is here of these
+  std::size_t MostPairs = 0;    ///< the most of these
 };
 
 } // namespace dsm

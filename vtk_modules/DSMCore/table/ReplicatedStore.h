@@ -90,6 +90,8 @@ public:
 
   /// Worker: the block. The pin is valid as long as the segment is published.
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
+  std::pair<Pin, Pin> AcquirePair(Worker& worker, const BlockSegment& segment, BlockId id,
+    const BlockSegment& otherSegment, BlockId otherId);
   bool MayPrefetch() const { return false; }
   bool Prefetch(const BlockSegment&, const BlockId*, std::size_t,
     FunctionRef<void(BlockId, std::vector<BlockId>&)> = {})
@@ -156,6 +158,13 @@ inline ReplicatedStore::Pin ReplicatedStore::Acquire(
   worker.Accesses.store(
     worker.Accesses.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   return Pin(line.Address.load(std::memory_order_relaxed), line.Bytes);
+}
+
+inline std::pair<ReplicatedStore::Pin, ReplicatedStore::Pin> ReplicatedStore::AcquirePair(
+  Worker& worker, const BlockSegment& segment, BlockId id, const BlockSegment& otherSegment,
+  BlockId otherId)
+{
+  return { this->Acquire(worker, segment, id), this->Acquire(worker, otherSegment, otherId) };
 }
 
 } // namespace dsm
