@@ -34,7 +34,7 @@ ROOMS = {
         "frame",
     ],
     "vtk_modules/DSMVolumeFiles": ["base", "codec", "format", "cache", "range", "write"],
-    "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "frame", "scene", "mapper"],
+    "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "part", "frame", "scene", "mapper"],
     "plugin/Representations": [
         "base", "paraview_before_6_0", "paraview_from_6_0", "settings", "domains", "session",
         "selection_and_export", "displays", "sources",

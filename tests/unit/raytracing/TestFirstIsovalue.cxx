@@ -58,18 +58,16 @@ std::vector<std::optional<double>> FindOnRanks(const Fields& fields, int ranks)
       [&, rank]
       {
         dsm::Messenger messenger(std::move(transports[rank]));
-        std::vector<std::shared_ptr<const bricks::VoxelField>> mine;
+        Fields mine;
+        std::vector<bricks::SurveyedBricks> surveyed;
         for (const auto& field : fields)
         {
-          auto share = field ? std::make_shared<bricks::VoxelField>(*field) : nullptr;
-          if (share)
-          {
-            share->Segment = std::make_shared<ShareOfSegment>(
-              field->Segment, field->Lattice.CreateDirectory(ranks), rank);
-          }
-          mine.push_back(share);
+          const auto share = mine.emplace_back(std::make_shared<bricks::VoxelField>(*field));
+          share->Segment = std::make_shared<ShareOfSegment>(
+            field->Segment, field->Lattice.CreateDirectory(ranks), rank);
+          surveyed.push_back({ share->Survey ? &*share->Survey : nullptr, share.get() });
         }
-        found[rank] = bricks::FindFirstLook(mine, messenger).Isovalue;
+        found[rank] = bricks::FindFirstLook(surveyed, messenger).Isovalue;
         messenger.Barrier();
       });
   }
@@ -133,7 +131,7 @@ TEST(TestFirstIsovalue, IsTheSameOnEveryNumberOfRanks)
   MemoryStore store;
   const TestVolume<float> sphere(bricks::Index3(Points), GetSquaredDistance);
   const TestVolume<std::uint8_t> scan(bricks::Index3(Points, 23, 41), GetScanned);
-  const Fields fields{ CreateField(store, sphere), nullptr, CreateField(store, scan) };
+  const Fields fields{ CreateField(store, sphere), CreateField(store, scan) };
   const std::optional<double> expected = FindOnRanks(fields, 1).front();
   ASSERT_TRUE(expected);
   for (const int ranks : { 2, 3, 4 })
@@ -178,7 +176,7 @@ TEST(TestFirstIsovalue, ThereIsNoneWhereNoSurfaceIs)
 {
   EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return 3.0f; })));
   EXPECT_FALSE(Find(TestVolume<float>(bricks::Index3(Points), [](int, int, int) { return NAN; })));
-  EXPECT_FALSE(FindOnRanks({ nullptr }, 2).back());
+  EXPECT_FALSE(FindOnRanks({}, 2).back());
 }
 
 /// A ball whose other half, beyond x = 40, is a fill value that nothing declares.

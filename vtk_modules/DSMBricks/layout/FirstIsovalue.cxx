@@ -56,19 +56,20 @@ std::array<double, IsovalueSurvey::Intervals> FindWorths(const IsovalueSurvey& s
 }
 
 /// Collective. Surveys the fields that have no survey yet, within limits.
-LimitedSurvey LookThrough(const std::vector<std::shared_ptr<const VoxelField>>& fields,
-  dsm::Messenger& messenger, const ValueLimits& limits)
+LimitedSurvey LookThrough(
+  const std::vector<SurveyedBricks>& all, dsm::Messenger& messenger, const ValueLimits& limits)
 {
   LimitedSurvey mine;
   messenger.RunTogether("Surveying the macrocells",
     [&]
     {
-      for (const auto& field : fields)
+      for (const SurveyedBricks& one : all)
       {
-        if (field && !field->Survey)
+        if (!one.Survey)
         {
-          const BrickLattice& lattice = field->Lattice;
-          field->Segment->ForEachResident([&](dsm::BlockId id, const std::byte* block, std::size_t)
+          const BrickLattice& lattice = one.Field->Lattice;
+          one.Field->Segment->ForEachResident(
+            [&](dsm::BlockId id, const std::byte* block, std::size_t)
             { mine.CountBrick(lattice.GetCellsOfBrick(id), lattice.GetCells(), block, limits); });
         }
       }
@@ -114,44 +115,38 @@ std::optional<double> Choose(IsovalueSurvey survey)
 
 } // namespace
 
-FirstLook FindFirstLook(const std::vector<std::shared_ptr<const VoxelField>>& fields,
-  dsm::Messenger& messenger, const IsovalueSurvey* others)
+FirstLook FindFirstLook(const std::vector<SurveyedBricks>& all, dsm::Messenger& messenger)
 {
   // The same on every rank.
-  const auto isAny = [&](const auto& holds)
+  const auto mayHaveSurface = [](const SurveyedBricks& one)
   {
-    return std::any_of(
-      fields.begin(), fields.end(), [&](const auto& field) { return field && holds(*field); });
+    return one.Field ? one.Field->Hierarchy.GetRange().First < one.Field->Hierarchy.GetRange().Last
+                     : one.Survey->Least < one.Survey->Greatest;
   };
-  const auto mayHaveSurface = [](const VoxelField& field)
-  { return field.Hierarchy.GetRange().First < field.Hierarchy.GetRange().Last; };
-  if (!isAny(mayHaveSurface) && !(others && others->Least < others->Greatest))
+  if (std::none_of(all.begin(), all.end(), mayHaveSurface))
   {
     return {};
   }
-  const bool isSurveyed = !isAny([](const VoxelField& field) { return !field.Survey; });
+  const bool isSurveyed = std::all_of(
+    all.begin(), all.end(), [](const SurveyedBricks& one) { return one.Survey != nullptr; });
   const auto look = [&](const ValueLimits& limits)
   {
-    LimitedSurvey sum = isSurveyed ? LimitedSurvey() : LookThrough(fields, messenger, limits);
-    for (const auto& field : fields)
+    LimitedSurvey sum = isSurveyed ? LimitedSurvey() : LookThrough(all, messenger, limits);
+    for (const SurveyedBricks& one : all)
     {
-      if (field && field->Survey)
+      if (one.Survey)
       {
-        AddWhole(*field->Survey, limits, sum);
+        AddWhole(*one.Survey, limits, sum);
       }
-    }
-    if (others)
-    {
-      AddWhole(*others, limits, sum);
     }
     return sum;
   };
   std::vector<const std::vector<ValueRange>*> bricks;
-  for (const auto& field : fields)
+  for (const SurveyedBricks& one : all)
   {
-    if (field)
+    if (one.Field)
     {
-      bricks.push_back(&field->Hierarchy.GetLevels().front().Ranges);
+      bricks.push_back(&one.Field->Hierarchy.GetLevels().front().Ranges);
     }
   }
   const IsovalueSurvey survey = LeaveOutFills(look({}).Within, bricks, look);

@@ -6,12 +6,20 @@
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMCore/transport/Messenger.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 namespace bricks
 {
+
+/// Bricks of one field.
+struct SurveyedBricks
+{
+  /// Survey of all of them, the same on every rank; null: the bricks of Field are examined.
+  const IsovalueSurvey* Survey;
+  /// A lattice's field, whose fill values are found by its bricks; null for other fields.
+  const VoxelField* Field = nullptr;
+};
 
 /// What a first image of a volume shows.
 struct FirstLook
@@ -26,10 +34,8 @@ struct FirstLook
 /// the volume into two parts whose values differ most (Otsu, A Threshold Selection Method from Gray-Level
 /// Histograms, 1979). It prefers surfaces that the volume's border does not cut open. Fill values do not count. All
 /// criteria use the ranges of the macrocells, so no sample is read; every rank examines the bricks that it owns. The result
-/// depends on the values only, not on the number of ranks. `fields`: one for each lattice, some null. `others`: a survey of
-/// further bricks, the same on every rank; null: none.
-FirstLook FindFirstLook(const std::vector<std::shared_ptr<const VoxelField>>& fields,
-  dsm::Messenger& messenger, const IsovalueSurvey* others = nullptr);
+/// depends on the values only, not on the number of ranks.
+FirstLook FindFirstLook(const std::vector<SurveyedBricks>& all, dsm::Messenger& messenger);
 
 } // namespace bricks
 

@@ -5,6 +5,7 @@
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/WorkerSlots.h"
 #include "DSMRayTracing/field/lattice/LatticeMedia.h"
+#include "DSMRayTracing/field/lattice/LatticeSampler.h"
 #include "DSMRayTracing/field/levels/LevelMedia.h"
 #include "DSMRayTracing/field/levels/LevelSampler.h"
 #include "DSMRayTracing/frame/FieldReader.h"
@@ -14,6 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
+#include <variant>
 
 namespace rt
 {
@@ -26,9 +29,6 @@ public:
   StoreFieldReader(Store& store, typename Store::Worker& worker)
     : Blocks(store)
     , Self(worker)
-    , Lattices(store, worker)
-    , Levels(store, worker)
-    , Values(store, worker)
   {
   }
 
@@ -55,32 +55,39 @@ public:
   }
 
   std::vector<glm::dvec3> FindGradients(
-    const LatticeField& field, const std::vector<glm::dvec3>& points) override
+    const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
-    this->Lattices.FindGradients(field, points, gradients);
-    return gradients;
-  }
-  std::vector<glm::dvec3> FindGradients(
-    const LevelField& field, const std::vector<glm::dvec3>& points) override
-  {
-    std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
-    this->Levels.FindGradients(field, points, gradients);
+    std::visit(
+      [&](const auto& field)
+      {
+        using FieldType = std::decay_t<decltype(field)>;
+        typename FieldType::template Media<Store>(this->Blocks, this->Self)
+          .FindGradients(field, points, gradients);
+      },
+      any);
     return gradients;
   }
 
   std::vector<double> FindValues(
-    const LevelField& field, const std::vector<glm::dvec3>& points) override
+    const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<double> values(points.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t number = 0; number < points.size(); ++number)
-    {
-      LatticePlace place;
-      if (this->Values.FindPlace(field, points[number], place))
+    std::visit(
+      [&](const auto& field)
       {
-        this->Values.FindValues(*field.Voxels, &place, 1, &values[number]);
-      }
-    }
+        using FieldType = std::decay_t<decltype(field)>;
+        const typename FieldType::template Sampler<Store> sampler(this->Blocks, this->Self);
+        for (std::size_t number = 0; number < points.size(); ++number)
+        {
+          typename FieldType::Place place;
+          if (sampler.FindPlace(field, points[number], place))
+          {
+            sampler.FindValues(*field.Voxels, &place, 1, &values[number]);
+          }
+        }
+      },
+      any);
     return values;
   }
 
@@ -105,9 +112,6 @@ private:
 
   Store& Blocks;
   typename Store::Worker& Self;
-  LatticeMedia<Store> Lattices;
-  LevelMedia<Store> Levels;
-  LevelSampler<Store> Values;
 };
 
 /// One thread of each rank reads fields.

@@ -58,7 +58,8 @@ vtkIdType vtkDSMCellTriangles::GetNumberOfTriangles() const
   return this->CellIds->GetNumberOfValues();
 }
 
-void vtkDSMCellTriangles::Add(const Cell& cell, const std::vector<double>& isovalues)
+void vtkDSMCellTriangles::Add(
+  const Cell& cell, unsigned int block, const std::vector<double>& isovalues)
 {
   const auto [least, greatest] = std::minmax_element(cell.Values, cell.Values + 8);
   bool isFilled = false;
@@ -84,13 +85,13 @@ void vtkDSMCellTriangles::Add(const Cell& cell, const std::vector<double>& isova
   while (this->GetNumberOfTriangles() < this->Triangles->GetPolys()->GetNumberOfCells())
   {
     this->CellIds->InsertNextValue(cell.Id);
-    this->BlocksOfCells->InsertNextValue(cell.Block);
+    this->BlocksOfCells->InsertNextValue(block);
   }
-  this->FinishPoints(cell);
+  this->FinishPoints(cell, block);
 }
 
 /// The points that the cell has added.
-void vtkDSMCellTriangles::FinishPoints(const Cell& cell)
+void vtkDSMCellTriangles::FinishPoints(const Cell& cell, unsigned int block)
 {
   constexpr double inward = 1e-3;
   const glm::dvec3 center = 0.5 * (cell.Places[0] + cell.Places[7]);
@@ -108,7 +109,7 @@ void vtkDSMCellTriangles::FinishPoints(const Cell& cell)
       nearest = getDistance(corner) <= getDistance(nearest) ? corner : nearest;
     }
     this->PointIds->InsertNextValue(cell.Points[nearest]);
-    this->BlocksOfPoints->InsertNextValue(cell.Block);
+    this->BlocksOfPoints->InsertNextValue(block);
   }
 }
 

@@ -2,6 +2,8 @@
 #ifndef vtkDSMCellTriangles_h
 #define vtkDSMCellTriangles_h
 
+#include "vtkDSMOwnCells.h"
+
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -24,15 +26,7 @@ class vtkVoxel;
 class vtkDSMCellTriangles
 {
 public:
-  /// A cell. Corners: x in bit 0, y in bit 1, z in bit 2.
-  struct Cell
-  {
-    double Values[8];
-    glm::dvec3 Places[8]; ///< affine
-    vtkIdType Points[8];  ///< numbers of the corners in their dataset
-    vtkIdType Id;
-    unsigned int Block; ///< flat index of the dataset
-  };
+  using Cell = vtkDSMOwnCells::Cell;
 
   /// `bounds`: of the cells. `points`: about how many points there will be. `isMirrored`: x, y and z of the cells are
   /// left-handed in space. `hasBlocks`: the dataset is a composite one.
@@ -46,8 +40,8 @@ public:
   void TakeCellArray(vtkDataArray* array);
   ///@}
 
-  /// Adds the triangles of surfaces in a cell, whose values are finite.
-  void Add(const Cell& cell, const std::vector<double>& isovalues);
+  /// Adds the triangles of surfaces in a cell. `block`: flat index of its dataset.
+  void Add(const Cell& cell, unsigned int block, const std::vector<double>& isovalues);
 
   vtkIdType GetNumberOfTriangles() const;
   /// One for each point: a place near it, within a cell that has it.
@@ -56,7 +50,7 @@ public:
   vtkPolyData* Finish();
 
 private:
-  void FinishPoints(const Cell& cell);
+  void FinishPoints(const Cell& cell, unsigned int block);
 
   int Flip; ///< corners of a cell are corners of the voxel where these bits differ
   vtkNew<vtkPolyData> Triangles;

@@ -138,17 +138,12 @@ bool vtkDSMSceneVolume::Published::IsOf(
   return this->Choice == choice && (this->Failure.empty() || this->RetryVersion == retryVersion);
 }
 
-const vtkDSMVolumeData::Fields& vtkDSMSceneVolume::Published::GetFields() const
+const vtkDSMVolumeData::Values& vtkDSMSceneVolume::Published::GetParts(int level) const
 {
-  static const vtkDSMVolumeData::Fields none;
-  return this->Publication ? this->Publication->Bricks : none;
-}
-
-const std::vector<std::shared_ptr<const bricks::LevelVoxels>>&
-vtkDSMSceneVolume::Published::GetLevels() const
-{
-  static const std::vector<std::shared_ptr<const bricks::LevelVoxels>> none;
-  return this->Publication ? this->Publication->Levels : none;
+  static const vtkDSMVolumeData::Values none;
+  return !this->Publication ? none
+    : level > 0             ? (*this->Coarser)[static_cast<std::size_t>(level) - 1]
+                            : this->Publication->Parts;
 }
 
 void vtkDSMSceneVolume::GiveUpBlocks()
@@ -161,22 +156,22 @@ void vtkDSMSceneVolume::GiveUpBlocks()
 bricks::ValueRange vtkDSMSceneVolume::Published::GetRange() const
 {
   bricks::ValueRange all{ std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest() };
-  for (const auto& field : this->GetFields())
+  for (const auto& values : this->GetParts())
   {
-    if (field)
+    if (values)
     {
-      all.First = std::min(all.First, field->Hierarchy.GetRange().First);
-      all.Last = std::max(all.Last, field->Hierarchy.GetRange().Last);
-    }
-  }
-  for (const auto& levels : this->GetLevels())
-  {
-    if (levels)
-    {
-      all.Add(levels->Hierarchy.GetRange());
+      all.Add(values->GetRange());
     }
   }
   return all;
+}
+
+vtkDSMPart::Request vtkDSMSceneVolume::MakeRequest(
+  const vtkDSMVolumeData::Choice& choice, const char* purpose) const
+{
+  vtkDSMVolumeMapper* const mapper = this->Mapper;
+  vtkDSMProgress::Begin(mapper);
+  return { choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); } };
 }
 
 std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
@@ -196,11 +191,8 @@ std::shared_ptr<vtkDSMSceneVolume::Published> vtkDSMSceneVolume::Require(
   published->RetryVersion = retryVersion;
   try
   {
-    vtkDSMVolumeMapper* mapper = this->Mapper;
-    vtkDSMProgress::Begin(mapper);
-    published->Publication = this->Data->Publish(
-      choice, purpose, [mapper](double part) { vtkDSMProgress::Tell(mapper, part); },
-      this->TakeStale(choice));
+    published->Publication =
+      this->Data->Publish(this->MakeRequest(choice, purpose), this->TakeStale(choice));
   }
   catch (const vtkDSMImageArrays::Missing& missing)
   {
@@ -377,11 +369,9 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
     {
       try
       {
-        vtkDSMVolumeMapper* mapper = this->Mapper;
-        vtkDSMProgress::Begin(mapper);
-        published->Coarser = this->Data->PublishCoarser(*published->Publication, published->Choice,
-          published == this->GetIso() ? "isosurface array" : "color array",
-          [mapper](double part) { vtkDSMProgress::Tell(mapper, part); });
+        published->Coarser = this->Data->PublishCoarser(*published->Publication,
+          this->MakeRequest(
+            published->Choice, published == this->GetIso() ? "isosurface array" : "color array"));
       }
       catch (const dsm::Error& error)
       {
@@ -399,12 +389,12 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
 
 int vtkDSMSceneVolume::CountCoarser() const
 {
-  std::size_t levels = this->GetIso() ? this->GetIso()->CountCoarser() : 0;
+  int levels = this->GetIso() ? this->GetIso()->CountCoarser() : 0;
   for (const auto& published : this->Arrays)
   {
-    levels = published->GetFields().empty() ? levels : std::min(levels, published->CountCoarser());
+    levels = published->HasAny() ? std::min(levels, published->CountCoarser()) : levels;
   }
-  return static_cast<int>(levels);
+  return levels;
 }
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
@@ -418,20 +408,15 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   {
     this->SuggestedFor = this->GetIso()->Choice;
     this->SuggestedFrom = range;
-    std::optional<bricks::IsovalueSurvey> ofLevels;
-    for (const auto& levels : this->GetIso()->GetLevels())
+    std::vector<bricks::SurveyedBricks> surveyed;
+    for (const auto& values : this->GetIso()->GetParts())
     {
-      if (levels && !ofLevels)
+      if (values)
       {
-        ofLevels = levels->Survey;
-      }
-      else if (levels)
-      {
-        ofLevels->Add(levels->Survey);
+        surveyed.push_back(values->GetSurveyed());
       }
     }
-    const bricks::FirstLook look = bricks::FindFirstLook(
-      this->GetIso()->GetFields(), messenger, ofLevels ? &*ofLevels : nullptr);
+    const bricks::FirstLook look = bricks::FindFirstLook(surveyed, messenger);
     this->Suggested = look.Isovalue;
     this->ValuesWithoutFills = HasFills(look.Values, range)
       ? std::optional(std::array<double, 2>{ look.Values.Least, look.Values.Greatest })
@@ -440,14 +425,6 @@ void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
   this->Mapper->SetSuggestedIsoValue(this->Suggested.value_or(vtkMath::Nan()));
   this->Mapper->SetSuggestedRange(
     this->ValuesWithoutFills.value_or(std::array<double, 2>{ vtkMath::Nan(), vtkMath::Nan() }));
-}
-
-std::shared_ptr<const bricks::VoxelField> vtkDSMSceneVolume::GetColorValues(
-  std::size_t lattice) const
-{
-  const Published& color = this->GetColoring();
-  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
-  return level > 0 ? color.Coarser->Levels[level - 1][lattice].Field : color.GetFields()[lattice];
 }
 
 void vtkDSMSceneVolume::SetColors(rt::IsosurfaceLook& look)
@@ -468,7 +445,7 @@ void vtkDSMSceneVolume::SetColors(rt::IsosurfaceLook& look)
 std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t part) const
 {
   std::vector<rt::BlockLooks::Block> blocks;
-  for (const vtkDSMVolumeData::Block& block : this->Data->GetBlocks(part))
+  for (const vtkDSMPart::Block& block : this->Data->GetParts()[part]->GetBlocks())
   {
     rt::BlockLooks::Look look;
     if (block.Look.Color)
@@ -495,24 +472,6 @@ std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::s
     }
   }
   return blocks.empty() ? nullptr : std::make_shared<const rt::BlockLooks>(std::move(blocks));
-}
-
-rt::LatticeField vtkDSMSceneVolume::GetField(
-  const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const
-{
-  rt::LatticeField field;
-  const auto level = static_cast<std::size_t>(std::min(this->GetCoarser(), this->CountCoarser()));
-  const glm::dmat4 latticeToWorld = dataToWorld * this->Data->GetIndexToWorld(lattice);
-  if (level > 0)
-  {
-    const auto& coarser = array.Coarser->Levels[level - 1][lattice];
-    field.Voxels = coarser.Field;
-    field.SetIndexToWorld(latticeToWorld * coarser.ToLattice);
-    return field;
-  }
-  field.Voxels = array.GetFields()[lattice];
-  field.SetIndexToWorld(latticeToWorld);
-  return field;
 }
 
 void vtkDSMSceneVolume::AddTo(rt::Scene& scene)

@@ -10,6 +10,7 @@
 
 #include "vtkType.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -17,7 +18,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
-#include <type_traits>
+#include <variant>
 #include <vector>
 
 /// A volume of a scene.
@@ -58,13 +59,11 @@ private:
     /// Returns whether this is the result of publishing the array, and publishing it again would
     /// give the same.
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
-    /// Empty when it failed.
-    const vtkDSMVolumeData::Fields& GetFields() const;
-    /// Empty when it failed.
-    const std::vector<std::shared_ptr<const bricks::LevelVoxels>>& GetLevels() const;
+    /// The values of the parts; empty when it failed. `level`: of detail; the finest is 0.
+    const vtkDSMVolumeData::Values& GetParts(int level = 0) const;
     /// Returns whether there is anything to show.
-    bool HasAny() const { return !this->GetFields().empty() || !this->GetLevels().empty(); }
-    std::size_t CountCoarser() const { return this->Coarser ? this->Coarser->Levels.size() : 0; }
+    bool HasAny() const { return !this->GetParts().empty(); }
+    int CountCoarser() const { return this->Coarser ? static_cast<int>(this->Coarser->size()) : 0; }
     /// Returns the range of all values; without any, its First is greater than its Last.
     bricks::ValueRange GetRange() const;
   };
@@ -80,6 +79,9 @@ private:
   /// is none, because memory may be short.
   std::shared_ptr<const vtkDSMVolumeData::Publication> TakeStale(
     const vtkDSMVolumeData::Choice& choice);
+  /// Returns what to publish; it reports progress.
+  vtkDSMPart::Request MakeRequest(
+    const vtkDSMVolumeData::Choice& choice, const char* purpose) const;
   std::shared_ptr<Published> Require(const vtkDSMVolumeData::Choice& choice, const char* purpose,
     unsigned retryVersion, const std::vector<std::shared_ptr<Published>>& known);
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
@@ -102,29 +104,22 @@ private:
   /// Returns the array whose values the colors represent: slices alone, and most media, are colored
   /// by their own array.
   const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
-  /// At the level of detail that is shown.
-  rt::LatticeField GetField(
-    const Published& array, std::size_t lattice, const glm::dmat4& dataToWorld) const;
+  /// Returns the values of the parts at the level of detail that is shown.
+  const vtkDSMVolumeData::Values& GetParts(const Published& array) const
+  {
+    return array.GetParts(std::min(this->GetCoarser(), this->CountCoarser()));
+  }
   /// Calls `visit(field, part)` for each part of the dataset that has the array, in their order.
   template <class Visit>
   void ForEachField(const Published& array, const glm::dmat4& dataToWorld, const Visit& visit) const
   {
-    const vtkDSMVolumeData::Fields& fields = array.GetFields();
-    for (std::size_t lattice = 0; lattice < fields.size(); ++lattice)
+    const vtkDSMVolumeData::Values& parts = this->GetParts(array);
+    for (std::size_t part = 0; part < parts.size(); ++part)
     {
-      if (fields[lattice])
+      if (parts[part])
       {
-        visit(this->GetField(array, lattice, dataToWorld), lattice);
-      }
-    }
-    for (std::size_t number = 0; number < array.GetLevels().size(); ++number)
-    {
-      if (const auto& levels = array.GetLevels()[number])
-      {
-        rt::LevelField field;
-        field.Voxels = levels;
-        field.SetIndexToWorld(dataToWorld * this->Data->GetLevels(number).GetIndexToWorld());
-        visit(field, this->Data->GetNumberOfLattices() + number);
+        std::visit(
+          [&](const auto& field) { visit(field, part); }, parts[part]->GetField(dataToWorld));
       }
     }
   }
@@ -132,16 +127,10 @@ private:
   template <class FieldType>
   std::shared_ptr<const typename FieldType::Values> FindColorValues(std::size_t part) const
   {
-    if constexpr (std::is_same_v<FieldType, rt::LatticeField>)
-    {
-      const vtkDSMVolumeData::Fields& fields = this->GetColoring().GetFields();
-      return fields.empty() || !fields[part] ? nullptr : this->GetColorValues(part);
-    }
-    else
-    {
-      const auto& levels = this->GetColoring().GetLevels();
-      return levels.empty() ? nullptr : levels[part - this->Data->GetNumberOfLattices()];
-    }
+    const vtkDSMVolumeData::Values& parts = this->GetParts(this->GetColoring());
+    return parts.empty() || !parts[part]
+      ? nullptr
+      : std::get<FieldType>(parts[part]->GetField(glm::dmat4(1.0))).Voxels;
   }
   /// The same, if a medium takes its colors from another array than its opacities.
   template <class FieldType>
@@ -164,8 +153,6 @@ private:
   bool HasDirectColors() const;
   /// The medium's colors, with the opacities of the same values or without; of the first one of several.
   std::shared_ptr<const rt::ColorMap> GetMediumColors(bool hasOpacity);
-  /// Returns the values of the color array, at the current level of detail.
-  std::shared_ptr<const bricks::VoxelField> GetColorValues(std::size_t lattice) const;
   /// Sets the colors of a surface by the color array.
   void SetColors(rt::IsosurfaceLook& look);
   /// Slices alone, or with isosurfaces.

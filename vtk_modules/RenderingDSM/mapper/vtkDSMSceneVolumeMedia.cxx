@@ -59,7 +59,7 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   const std::size_t count = this->HasSeveralMedia() ? this->Arrays.size() : 1;
-  std::vector<int> groups(this->Data->GetNumberOfParts());
+  std::vector<int> groups(this->Data->GetParts().size());
   for (std::size_t number = 0; number < count; ++number)
   {
     this->AddMedium(look, number, dataToWorld, groups, scene);

@@ -41,27 +41,18 @@ rt::SliceOf<FieldType> vtkDSMSceneVolume::CreateSlice(const vtkDSMVolumeLook& lo
 void vtkDSMSceneVolume::AddSlices(
   const vtkDSMVolumeLook& look, const glm::dmat4& dataToWorld, rt::Scene& scene)
 {
-  std::vector<bricks::Index3> points;
-  for (const auto& lattice : this->GetIso()->GetFields())
-  {
-    points.push_back(lattice ? lattice->Lattice.GetPoints() : bricks::Index3(0));
-  }
-  for (const auto& levels : this->GetIso()->GetLevels())
-  {
-    points.push_back(levels
-        ? bricks::Index3(glm::ceil(levels->Lattice.GetBounds()[1])) + bricks::Index3(1)
-        : bricks::Index3(0));
-  }
+  // Indices are of the finest level of detail.
+  const vtkDSMVolumeData::Values& finest = this->GetIso()->GetParts();
   std::array<int, 3> most{};
-  for (const bricks::Index3& one : points)
+  for (const auto& values : finest)
   {
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; values && axis < 3; ++axis)
     {
-      most[axis] = std::max(most[axis], static_cast<int>(one[axis]));
+      most[axis] = std::max(most[axis], static_cast<int>(values->CountSlices()[axis]));
     }
   }
   this->Mapper->SetSlicePoints(most);
-  for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !points.empty(); ++number)
+  for (int number = 0; number < this->Mapper->GetNumberOfSlices() && !finest.empty(); ++number)
   {
     const int axis = this->Mapper->GetSliceAxis(number);
     const int index = this->Mapper->GetSliceIndex(number);
@@ -77,16 +68,7 @@ void vtkDSMSceneVolume::AddSlices(
     {
       auto slice =
         this->CreateSlice(look, dataToWorld, field, part, this->Mapper->GetSliceLighting());
-      if constexpr (std::is_same_v<std::decay_t<decltype(field)>, rt::LatticeField>)
-      {
-        // By the indices of the finest level of detail.
-        slice.Planes = look.GetSlices(dataToWorld * this->Data->GetIndexToWorld(part), points[part],
-          this->GetIso()->GetFields()[part]->Planes.get());
-      }
-      else
-      {
-        slice.Planes = look.GetSlices(field.IndexToWorld, points[part], nullptr);
-      }
+      slice.Planes = look.GetSlices(dataToWorld, *finest[part]);
       scene.Objects.push_back(std::move(slice));
     });
 }

@@ -64,9 +64,12 @@ bool vtkDSMVolumeLook::HasColoredSlices() const
 }
 
 std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
-  const glm::dmat4& toWorld, const bricks::Index3& points, const bricks::GridPlanes* grid) const
+  const glm::dmat4& dataToWorld, const vtkDSMPartValues& values) const
 {
   std::vector<rt::SectionPlane> slices;
+  const glm::dmat4 toWorld = dataToWorld * values.GetIndexToData();
+  const bricks::Index3 count = values.CountSlices();
+  const bricks::GridPlanes* const grid = values.GetPlanes();
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));
   std::set<std::pair<int, int>> indices; // each once
   for (int number = 0; number < this->Mapper->GetNumberOfSlices(); ++number)
@@ -77,7 +80,7 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
   }
   for (const auto& [axis, index] : indices)
   {
-    if (index < points[axis])
+    if (index < count[axis])
     {
       glm::dvec4 place(0.0, 0.0, 0.0, 1.0);
       place[axis] = grid ? grid->GetPlace(axis, index) : index;

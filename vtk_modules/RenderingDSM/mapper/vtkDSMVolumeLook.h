@@ -80,10 +80,10 @@ public:
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
   /// Returns whether the slices, and the faces of isosurfaces, have the colors of an array.
   bool HasColoredSlices() const;
-  /// The slices of a lattice with that many points, in world space; `toWorld`: from its index or grid space; `grid`: its planes,
-  /// or null. Slices by an index that the lattice does not have are left out.
+  /// The slices of a part, in world space, by the indices of these values. Those by an index that the part does not have are
+  /// left out.
   std::vector<rt::SectionPlane> GetSlices(
-    const glm::dmat4& toWorld, const bricks::Index3& points, const bricks::GridPlanes* grid) const;
+    const glm::dmat4& dataToWorld, const vtkDSMPartValues& values) const;
   /// Sets how slices and faces of isosurfaces look, but for their colors.
   template <class FieldType>
   void SetSliceLook(bool isLit, rt::SliceOf<FieldType>& slice) const

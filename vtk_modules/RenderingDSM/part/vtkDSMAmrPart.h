@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMAmrData_h
-#define vtkDSMAmrData_h
+#ifndef vtkDSMAmrPart_h
+#define vtkDSMAmrPart_h
 
 #include "DSMBricks/build/LatticePlan.h"
-#include "vtkDSMLevelData.h"
+#include "vtkDSMLevelPart.h"
 
 #include <array>
 #include <cstdint>
@@ -15,12 +15,12 @@ class vtkImageData;
 /// Adaptively refined blocks. Levels are found by the blocks' spacing. Cells that a finer block covers are not shown, nor are
 /// ghost and blanked cells. Where no finer block is there, a cell that is marked as refined is shown. Of blocks of a level that
 /// overlap, the one of the lowest flat index counts, on whatever rank it is.
-class vtkDSMAmrData final : public vtkDSMLevelData
+class vtkDSMAmrPart final : public vtkDSMLevelPart
 {
 public:
-  /// Collective. `parts`: this rank's images.
-  vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
-  ~vtkDSMAmrData() override;
+  /// Collective. `pieces`: this rank's images.
+  vtkDSMAmrPart(const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces);
+  ~vtkDSMAmrPart() override;
 
   std::unique_ptr<vtkDSMLevelSource> CreateSource(const Choice& choice) const override;
 

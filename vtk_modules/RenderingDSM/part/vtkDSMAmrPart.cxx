@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMAmrData.h"
+#include "vtkDSMAmrPart.h"
 
 #include "DSMBricks/levels/LevelSource.h"
 #include "vtkDSMGather.h"
@@ -22,7 +22,7 @@ namespace
 using bricks::Box;
 using bricks::Index3;
 
-/// Parts of a cell by which a place may miss a cell's corner, and of a number by which it may miss a whole one.
+/// OwnPieces of a cell by which a place may miss a cell's corner, and of a number by which it may miss a whole one.
 constexpr double Tolerance = 1e-3;
 
 bool AreSame(const double one[3], const double other[3])
@@ -47,10 +47,10 @@ bool IsEmpty(const bricks::PieceInfo& piece)
 } // namespace
 
 /// This rank's leaves, with the values of one array.
-class vtkDSMAmrData::Source final : public vtkDSMLevelSource
+class vtkDSMAmrPart::Source final : public vtkDSMLevelSource
 {
 public:
-  Source(const vtkDSMAmrData& data, const Choice& choice)
+  Source(const vtkDSMAmrPart& data, const Choice& choice)
     : Data(data)
     , OfPoints(!choice.OnCells)
     , Valid(choice.Valid)
@@ -197,7 +197,7 @@ private:
       });
   }
 
-  const vtkDSMAmrData& Data;
+  const vtkDSMAmrPart& Data;
   bool OfPoints;
   bricks::ValidValues Valid;
   std::vector<Block> Blocks;
@@ -205,8 +205,8 @@ private:
   std::vector<std::vector<std::size_t>> BlocksOfCubes;
 };
 
-vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
-  : vtkDSMLevelData(group, parts)
+vtkDSMAmrPart::vtkDSMAmrPart(const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces)
+  : vtkDSMLevelPart(group, pieces)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<bricks::PieceInfo> mine;
@@ -214,12 +214,12 @@ vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, cons
   messenger.RunTogether("Reading the levels",
     [&]
     {
-      for (const Part& part : parts)
+      for (const Piece& piece : pieces)
       {
-        vtkImageData* const block = vtkImageData::SafeDownCast(part.Data);
+        vtkImageData* const block = vtkImageData::SafeDownCast(piece.Data);
         this->Blocks.emplace_back(block);
-        looks.push_back(part.Look);
-        mine.push_back(vtkDSMImagePiece::Describe(block, static_cast<int>(part.Dataset)));
+        looks.push_back(piece.Look);
+        mine.push_back(vtkDSMImagePiece::Describe(block, static_cast<int>(piece.Dataset)));
       }
     });
   this->Pieces = vtkDSMGather::Items(messenger, mine, this->FirstOwn);
@@ -235,9 +235,9 @@ vtkDSMAmrData::vtkDSMAmrData(const std::shared_ptr<vtkDSMRankGroup>& group, cons
     });
 }
 
-vtkDSMAmrData::~vtkDSMAmrData() = default;
+vtkDSMAmrPart::~vtkDSMAmrPart() = default;
 
-void vtkDSMAmrData::FindLevels()
+void vtkDSMAmrPart::FindLevels()
 {
   this->Order.resize(this->Pieces.size());
   std::iota(this->Order.begin(), this->Order.end(), std::size_t{ 0 });
@@ -281,7 +281,7 @@ void vtkDSMAmrData::FindLevels()
   this->Scales = bricks::LevelScales(std::move(scales));
 }
 
-void vtkDSMAmrData::FindPlaces()
+void vtkDSMAmrPart::FindPlaces()
 {
   this->Places.assign(this->Pieces.size(), { 0, {} });
   const auto found = std::find_if(this->Order.begin(), this->Order.end(),
@@ -353,7 +353,7 @@ void vtkDSMAmrData::FindPlaces()
   this->SetPlace(anchor + direction * (glm::dvec3(least) * edges), direction, edges);
 }
 
-std::vector<std::uint8_t> vtkDSMAmrData::FindLeaves(std::size_t own) const
+std::vector<std::uint8_t> vtkDSMAmrPart::FindLeaves(std::size_t own) const
 {
   const auto number = static_cast<std::size_t>(this->FirstOwn) + own;
   const Place& place = this->Places[number];
@@ -385,12 +385,12 @@ std::vector<std::uint8_t> vtkDSMAmrData::FindLeaves(std::size_t own) const
   return leaves;
 }
 
-void vtkDSMAmrData::AddPlaces(bricks::ByteHash& hash) const
+void vtkDSMAmrPart::AddPlaces(bricks::ByteHash& hash) const
 {
   hash.Add(this->Pieces.data(), this->Pieces.size() * sizeof(bricks::PieceInfo));
 }
 
-std::unique_ptr<vtkDSMLevelSource> vtkDSMAmrData::CreateSource(const Choice& choice) const
+std::unique_ptr<vtkDSMLevelSource> vtkDSMAmrPart::CreateSource(const Choice& choice) const
 {
   return std::make_unique<Source>(*this, choice);
 }

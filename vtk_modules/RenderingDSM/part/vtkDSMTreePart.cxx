@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkDSMTreeData.h"
+#include "vtkDSMTreePart.h"
 
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
@@ -110,10 +110,10 @@ private:
 } // namespace
 
 /// This rank's leaves, with the values of one array.
-class vtkDSMTreeData::Source final : public vtkDSMLevelSource
+class vtkDSMTreePart::Source final : public vtkDSMLevelSource
 {
 public:
-  Source(const vtkDSMTreeData& data, const Choice& choice)
+  Source(const vtkDSMTreePart& data, const Choice& choice)
     : Component(choice.Component)
     , IsMissing(choice.Valid)
   {
@@ -195,18 +195,19 @@ private:
   std::vector<std::vector<Leaf>> Leaves; ///< of the cubes
 };
 
-vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts)
-  : vtkDSMLevelData(group, parts)
+vtkDSMTreePart::vtkDSMTreePart(
+  const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces)
+  : vtkDSMLevelPart(group, pieces)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::vector<Roots> mine;
   messenger.RunTogether("Reading the hyper trees",
     [&]
     {
-      for (const Part& part : parts)
+      for (const Piece& piece : pieces)
       {
-        this->Grids.emplace_back(vtkHyperTreeGrid::SafeDownCast(part.Data));
-        mine.push_back(Describe(part));
+        this->Grids.emplace_back(vtkHyperTreeGrid::SafeDownCast(piece.Data));
+        mine.push_back(Describe(piece));
       }
     });
   int first = 0;
@@ -215,18 +216,18 @@ vtkDSMTreeData::vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, co
   this->FindRepeated(first);
 }
 
-vtkDSMTreeData::~vtkDSMTreeData() = default;
+vtkDSMTreePart::~vtkDSMTreePart() = default;
 
-std::vector<vtkDSMLevelData::Parts> vtkDSMTreeData::Join(
-  dsm::Messenger& messenger, const Parts& parts)
+std::vector<vtkDSMLevelPart::OwnPieces> vtkDSMTreePart::Join(
+  dsm::Messenger& messenger, const OwnPieces& pieces)
 {
   std::vector<Roots> mine;
   messenger.RunTogether("Reading the hyper trees",
     [&]
     {
-      for (const Part& part : parts)
+      for (const Piece& piece : pieces)
       {
-        mine.push_back(Describe(part));
+        mine.push_back(Describe(piece));
       }
     });
   int firstOwn = 0;
@@ -287,25 +288,25 @@ std::vector<vtkDSMLevelData::Parts> vtkDSMTreeData::Join(
       unions.push_back(dataset);
     }
   }
-  std::vector<Parts> joined;
+  std::vector<OwnPieces> joined;
   for (const Joined& one : unions)
   {
-    Parts& own = joined.emplace_back();
+    OwnPieces& own = joined.emplace_back();
     for (const std::size_t grid : one.Grids)
     {
       const auto number = static_cast<std::int64_t>(grid) - firstOwn;
-      if (number >= 0 && number < static_cast<std::int64_t>(parts.size()))
+      if (number >= 0 && number < static_cast<std::int64_t>(pieces.size()))
       {
-        own.push_back(parts[static_cast<std::size_t>(number)]);
+        own.push_back(pieces[static_cast<std::size_t>(number)]);
       }
     }
   }
   return joined;
 }
 
-vtkDSMTreeData::Roots vtkDSMTreeData::Describe(const Part& part)
+vtkDSMTreePart::Roots vtkDSMTreePart::Describe(const Piece& piece)
 {
-  auto* const grid = vtkHyperTreeGrid::SafeDownCast(part.Data);
+  auto* const grid = vtkHyperTreeGrid::SafeDownCast(piece.Data);
   if (grid->GetDimension() != 3)
   {
     throw dsm::Error("A hyper tree grid of " + std::to_string(grid->GetDimension()) +
@@ -341,12 +342,12 @@ vtkDSMTreeData::Roots vtkDSMTreeData::Describe(const Part& part)
       roots.Trees.Min = glm::min(roots.Trees.Min, root);
       roots.Trees.Max = glm::max(roots.Trees.Max, root + Index3(1));
     });
-  roots.Dataset = part.Dataset;
-  roots.Look = part.Look;
+  roots.Dataset = piece.Dataset;
+  roots.Look = piece.Look;
   return roots;
 }
 
-std::optional<Index3> vtkDSMTreeData::FindFirst(const Roots& roots, const Roots& other)
+std::optional<Index3> vtkDSMTreePart::FindFirst(const Roots& roots, const Roots& other)
 {
   Index3 first;
   for (int axis = 0; axis < 3; ++axis)
@@ -364,7 +365,7 @@ std::optional<Index3> vtkDSMTreeData::FindFirst(const Roots& roots, const Roots&
   return first;
 }
 
-void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
+void vtkDSMTreePart::Place(const std::vector<Roots>& all, int firstOwn)
 {
   const Roots& one = all.front();
   const glm::dvec3 spacing(one.Spacing[0], one.Spacing[1], one.Spacing[2]);
@@ -403,7 +404,7 @@ void vtkDSMTreeData::Place(const std::vector<Roots>& all, int firstOwn)
   this->SetPlace(anchor + glm::dvec3(least) * spacing, glm::dmat3(1.0), spacing);
 }
 
-void vtkDSMTreeData::FindRepeated(int firstOwn)
+void vtkDSMTreePart::FindRepeated(int firstOwn)
 {
   struct Tree
   {
@@ -468,7 +469,7 @@ void vtkDSMTreeData::FindRepeated(int firstOwn)
   }
 }
 
-void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
+void vtkDSMTreePart::AddPlaces(bricks::ByteHash& hash) const
 {
   const int levels = this->Scales.GetCount();
   const Index3 finest = this->Scales.Get(levels - 1);
@@ -488,7 +489,7 @@ void vtkDSMTreeData::AddPlaces(bricks::ByteHash& hash) const
   }
 }
 
-std::unique_ptr<vtkDSMLevelSource> vtkDSMTreeData::CreateSource(const Choice& choice) const
+std::unique_ptr<vtkDSMLevelSource> vtkDSMTreePart::CreateSource(const Choice& choice) const
 {
   return std::make_unique<Source>(*this, choice);
 }

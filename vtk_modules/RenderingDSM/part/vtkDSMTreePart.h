@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef vtkDSMTreeData_h
-#define vtkDSMTreeData_h
+#ifndef vtkDSMTreePart_h
+#define vtkDSMTreePart_h
 
 #include "DSMBricks/base/Box.h"
-#include "vtkDSMLevelData.h"
+#include "vtkDSMLevelPart.h"
 
 #include <memory>
 #include <optional>
@@ -13,16 +13,16 @@
 class vtkHyperTreeGrid;
 
 /// Hyper tree grids in three dimensions, whose roots are on one lattice, equally spaced. Masked and ghost cells are not shown.
-class vtkDSMTreeData final : public vtkDSMLevelData
+class vtkDSMTreePart final : public vtkDSMLevelPart
 {
 public:
-  /// Collective. `parts`: this rank's hyper tree grids, which Join has put together.
-  vtkDSMTreeData(const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
-  ~vtkDSMTreeData() override;
+  /// Collective. `pieces`: this rank's hyper tree grids, which Join has put together.
+  vtkDSMTreePart(const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces);
+  ~vtkDSMTreePart() override;
 
   /// Collective. Returns this rank's grids sorted into those that are one; some have none on this rank. Grids whose roots
   /// are on one lattice are one if they are pieces of the same dataset, or if there is no root where several have a tree.
-  static std::vector<Parts> Join(dsm::Messenger& messenger, const Parts& parts);
+  static std::vector<OwnPieces> Join(dsm::Messenger& messenger, const OwnPieces& pieces);
 
 private:
   class Source;
@@ -35,10 +35,10 @@ private:
     std::int64_t Branching;
     std::int64_t Levels;
     bricks::Box Trees;    ///< around the roots that have a tree
-    std::int64_t Dataset; ///< see Part
+    std::int64_t Dataset; ///< see Piece
     vtkDSMBlockLook Look;
   };
-  static Roots Describe(const Part& part);
+  static Roots Describe(const Piece& piece);
   /// Finds where the first root of a grid is on the lattice of another one's. Nothing where it is not on it.
   static std::optional<bricks::Index3> FindFirst(const Roots& roots, const Roots& other);
   void Place(const std::vector<Roots>& all, int firstOwn);
