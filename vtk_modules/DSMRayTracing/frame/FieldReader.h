@@ -7,8 +7,7 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
-#include "DSMRayTracing/field/lattice/LatticeField.h"
-#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/field/Fields.h"
 
 #include <glm/vec3.hpp>
 
@@ -39,18 +38,14 @@ public:
     const std::vector<dsm::BlockId>& ids,
     dsm::FunctionRef<void(dsm::BlockId, const Brick&)> visit) = 0;
 
-  ///@{
-  /// How fast values grow at points in the field's world space, on each axis of its index space (LatticeMedia, LevelMedia);
-  /// 0 where there are none.
+  /// How fast values grow at points in the field's world space, on each axis of its own space (FindSmoothGradients of its
+  /// Sampler); 0 where there are none.
   virtual std::vector<glm::dvec3> FindGradients(
-    const LatticeField& field, const std::vector<glm::dvec3>& points) = 0;
-  virtual std::vector<glm::dvec3> FindGradients(
-    const LevelField& field, const std::vector<glm::dvec3>& points) = 0;
-  ///@}
+    const AnyField& field, const std::vector<glm::dvec3>& points) = 0;
 
   /// The values at points in the field's world space; NaN where there are none.
   virtual std::vector<double> FindValues(
-    const LevelField& field, const std::vector<glm::dvec3>& points) = 0;
+    const AnyField& field, const std::vector<glm::dvec3>& points) = 0;
 };
 
 } // namespace rt

@@ -4,9 +4,7 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/WorkerSlots.h"
-#include "DSMRayTracing/field/lattice/LatticeMedia.h"
-#include "DSMRayTracing/field/levels/LevelMedia.h"
-#include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/field/FieldSearches.h"
 #include "DSMRayTracing/frame/FieldReader.h"
 #include "DSMRayTracing/frame/ServedWork.h"
 
@@ -14,6 +12,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
+#include <variant>
 
 namespace rt
 {
@@ -26,9 +26,6 @@ public:
   StoreFieldReader(Store& store, typename Store::Worker& worker)
     : Blocks(store)
     , Self(worker)
-    , Lattices(store, worker)
-    , Levels(store, worker)
-    , Values(store, worker)
   {
   }
 
@@ -55,38 +52,50 @@ public:
   }
 
   std::vector<glm::dvec3> FindGradients(
-    const LatticeField& field, const std::vector<glm::dvec3>& points) override
+    const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
-    this->Lattices.FindGradients(field, points, gradients);
-    return gradients;
-  }
-  std::vector<glm::dvec3> FindGradients(
-    const LevelField& field, const std::vector<glm::dvec3>& points) override
-  {
-    std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
-    this->Levels.FindGradients(field, points, gradients);
+    this->VisitField(any,
+      [&](const auto& field, const auto& sampler)
+      { sampler.FindSmoothGradients(field, points, gradients); });
     return gradients;
   }
 
   std::vector<double> FindValues(
-    const LevelField& field, const std::vector<glm::dvec3>& points) override
+    const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<double> values(points.size(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t number = 0; number < points.size(); ++number)
-    {
-      LatticePlace place;
-      if (this->Values.FindPlace(field, points[number], place))
+    this->VisitField(any,
+      [&](const auto& field, const auto& sampler)
       {
-        this->Values.FindValues(*field.Voxels, &place, 1, &values[number]);
-      }
-    }
+        typename std::decay_t<decltype(field)>::Place place;
+        for (std::size_t number = 0; number < points.size(); ++number)
+        {
+          if (sampler.FindPlace(field, points[number], place))
+          {
+            sampler.FindValues(field.GetValues(), &place, 1, &values[number]);
+          }
+        }
+      });
     return values;
   }
 
 private:
   /// Bricks are asked for at most twice as many before they are read.
   static constexpr std::size_t Lead = 16;
+
+  /// Calls `visit(field, sampler)`.
+  template <class Visit>
+  void VisitField(const AnyField& any, const Visit& visit) const
+  {
+    std::visit(
+      [&](const auto& field)
+      {
+        using Sampler = typename std::decay_t<decltype(field)>::template Sampler<Store>;
+        visit(field, Sampler(this->Blocks, this->Self));
+      },
+      any);
+  }
 
   template <class T>
   static void Copy(const bricks::VoxelBrick<T>& from, Brick& to)
@@ -105,9 +114,6 @@ private:
 
   Store& Blocks;
   typename Store::Worker& Self;
-  LatticeMedia<Store> Lattices;
-  LevelMedia<Store> Levels;
-  LevelSampler<Store> Values;
 };
 
 /// One thread of each rank reads fields.

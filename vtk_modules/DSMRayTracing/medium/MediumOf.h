@@ -195,7 +195,7 @@ private:
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
     if (look.Shade || look.Gradients)
     {
-      this->Media.FindGradients(this->Medium.Field, points, gradients);
+      this->Sampler.FindSmoothGradients(this->Medium.Field, points, gradients);
     }
     for (std::size_t number = 0; number < pieces.size(); ++number)
     {

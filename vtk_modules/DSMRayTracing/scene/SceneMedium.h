@@ -2,8 +2,7 @@
 #ifndef rt_SceneMedium_h
 #define rt_SceneMedium_h
 
-#include "DSMRayTracing/field/lattice/LatticeField.h"
-#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/medium/ExtremumOf.h"
 #include "DSMRayTracing/medium/MediumOf.h"
 #include "DSMRayTracing/medium/SumOf.h"
@@ -21,11 +20,19 @@ using LevelMedium = MediumOf<LevelField>;
 using LevelExtremum = ExtremumOf<LevelField>;
 using LevelSum = SumOf<LevelField>;
 
-/// The table of the kinds of media. A kind has
-/// - a description, named here, with AddTo and the name of
-/// - its Tracer, a MediumTracer for a store, whose header SceneTracers-inl.h includes.
-using SceneMedium =
-  std::variant<LatticeMedium, LatticeExtremum, LatticeSum, LevelMedium, LevelExtremum, LevelSum>;
+template <class Fields>
+struct MediumKinds;
+template <class... FieldTypes>
+struct MediumKinds<std::variant<FieldTypes...>>
+{
+  using Any =
+    std::variant<MediumOf<FieldTypes>..., ExtremumOf<FieldTypes>..., SumOf<FieldTypes>...>;
+};
+
+/// A medium of any kind, for each kind of field. A kind has
+/// - a description with AddTo and the name of
+/// - its Tracer, a MediumTracer for a store, in the same header.
+using SceneMedium = MediumKinds<AnyField>::Any;
 
 /// Whether a kind of medium lies in layers along a ray, between which other things may be. The
 /// others show a single value of each ray.

@@ -2,16 +2,7 @@
 #ifndef rt_SceneTracers_inl_h
 #define rt_SceneTracers_inl_h
 
-#include "DSMRayTracing/field/lattice/LatticeExtrema.h"
-#include "DSMRayTracing/field/lattice/LatticeMedia.h"
-#include "DSMRayTracing/field/lattice/LatticeSampler.h"
-#include "DSMRayTracing/field/lattice/LatticeSections.h"
-#include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
-#include "DSMRayTracing/field/levels/LevelExtrema.h"
-#include "DSMRayTracing/field/levels/LevelMedia.h"
-#include "DSMRayTracing/field/levels/LevelSampler.h"
-#include "DSMRayTracing/field/levels/LevelSections.h"
-#include "DSMRayTracing/field/levels/LevelSurfaces.h"
+#include "DSMRayTracing/field/FieldSearches.h"
 #include "DSMRayTracing/mesh/MeshTracer.h"
 #include "DSMRayTracing/scene/SceneTracers.h"
 #include "DSMRayTracing/slice/SliceTracer.h"
