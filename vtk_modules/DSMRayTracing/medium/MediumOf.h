@@ -45,6 +45,9 @@ struct MediumOf
   /// From world space to that in which the function measures lengths; the linear part.
   glm::dmat3 WorldToSpace{ 1.0 };
 
+  /// See HasLayers.
+  static constexpr bool IsLayered() { return true; }
+
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
   {

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
+#include "DSMRayTracing/scene/OtherKind.h"
 #include "DSMRayTracing/slice/SliceOf.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
 
@@ -22,7 +23,8 @@ struct ObjectKinds;
 template <class... FieldTypes>
 struct ObjectKinds<std::variant<FieldTypes...>>
 {
-  using Any = std::variant<IsosurfaceOf<FieldTypes>..., MeshObject, SliceOf<FieldTypes>...>;
+  using Any =
+    std::variant<IsosurfaceOf<FieldTypes>..., MeshObject, SliceOf<FieldTypes>..., OtherObject>;
 };
 
 /// An object of any kind: surfaces and slices of each kind of field, and meshes. A kind has

@@ -2,7 +2,7 @@
 // Isosurfaces as triangles.
 #include "vtkDSMSceneVolume.h"
 
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "vtkDSMCellTriangles.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMScene.h"

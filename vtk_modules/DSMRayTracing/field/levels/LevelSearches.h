@@ -7,7 +7,7 @@
 #include "DSMRayTracing/field/levels/LevelField.h"
 #include "DSMRayTracing/field/levels/LevelMedia.h"
 #include "DSMRayTracing/field/levels/LevelSampler.h"
-#include "DSMRayTracing/field/levels/LevelSections.h"
 #include "DSMRayTracing/field/levels/LevelSurfaces.h"
+#include "DSMRayTracing/field/walk/WalkSections.h"
 
 #endif
