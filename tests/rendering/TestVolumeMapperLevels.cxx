@@ -3,12 +3,10 @@
 #include "VolumeMapperLevelsTest.h"
 
 #include "vtkColorTransferFunction.h"
-#include "vtkLookupTable.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNonOverlappingAMR.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPolyData.h"
-#include "vtkProperty.h"
 #include "vtkTrivialProducer.h"
 #include "vtkVolumeProperty.h"
 
@@ -192,55 +190,6 @@ TEST_F(VolumeMapperLevels, StandsInForAmrVolumeMapper)
   copy->ShallowCopy(mapper);
   EXPECT_EQ(copy->GetRequestedRenderMode(), vtkDSMVolumeMapper::GPURenderMode);
   EXPECT_EQ(copy->GetNumberOfSamples()[2], 256);
-}
-
-TEST_F(VolumeMapperLevels, LitMediaOfAmrLookAsThoseOfAnImage)
-{
-  const auto image = MakeBall();
-  vtkNew<vtkUniformGrid> block;
-  block->ShallowCopy(image);
-  vtkNew<vtkNonOverlappingAMR> amr;
-  const int counts[] = { 1 };
-  amr->Initialize(1, counts);
-  amr->SetDataSet(0, 0, block);
-  this->Mapper->SetNumberOfIsoValues(0);
-  vtkVolumeProperty* const property = this->Volume->GetProperty();
-  vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(0.0, 0.05);
-  opacity->AddPoint(1.0, 0.05);
-  property->SetScalarOpacity(opacity);
-  property->SetInterpolationType(VTK_LINEAR_INTERPOLATION);
-  property->GetRGBTransferFunction(0)->AddRGBPoint(0.0, 1.0, 1.0, 1.0);
-  vtkNew<vtkPiecewiseFunction> gradients;
-  gradients->AddPoint(0.005, 0.0);
-  gradients->AddPoint(0.03, 1.0);
-  property->SetGradientOpacity(gradients);
-  property->ShadeOn();
-  const std::vector<unsigned char> levels = this->Draw(amr);
-  const std::vector<unsigned char> lattice = this->Draw(image);
-  EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
-  EXPECT_GT(Compare(levels, std::vector<unsigned char>(levels.size())), 10.0);
-  EXPECT_LT(Compare(levels, lattice), 0.02);
-}
-
-TEST_F(VolumeMapperLevels, TranslucentSurfacesOfAmrLookAsThoseOfAnImage)
-{
-  const auto amr =
-    MakeAmr<vtkOverlappingAMR>([](std::size_t number) { return Make(Blocks[number]); });
-  this->Mapper->SetIsoValue(0, 0.15);
-  this->Mapper->SetIsoValue(1, 0.3);
-  this->Mapper->SetIsoValue(2, 0.4);
-  this->Mapper->GetSurfaceProperty()->SetOpacity(0.4);
-  this->Mapper->ScalarVisibilityOn();
-  vtkNew<vtkLookupTable> table;
-  table->SetRange(0.1, 0.5);
-  this->Mapper->SetLookupTable(table);
-  this->Mapper->SetColorArray("distance");
-  const std::vector<unsigned char> levels = this->Draw(amr);
-  const std::vector<unsigned char> fine = this->Draw(MakeFine());
-  EXPECT_LT(Compare(levels, fine), 1.5);
-  EXPECT_GT(Compare(levels, std::vector<unsigned char>(levels.size())), 20.0);
-  EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
 }
 
 TEST_F(VolumeMapperLevels, WhatCannotBeShownIsExplained)

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 /// A volume of doubles that samples a function of the world position over [-1, 1]^3.
 class FunctionVolume final : public bricks::VoxelSource
@@ -57,15 +59,19 @@ public:
     return matrix;
   }
 
-  /// The function's surface at zero, published by the only rank.
+  /// The function's surface at zero. Collective; the first rank has all of it.
   static rt::LatticeIsosurface Publish(
     std::int64_t points, Function function, dsm::Messenger& messenger, dsm::BlockStore& store)
   {
     const bricks::BrickLattice lattice(
       bricks::Index3(points), bricks::ScalarType::Float64, false, 16);
     rt::LatticeIsosurface object;
-    object.Field.Voxels = bricks::PublishVolume("function", lattice,
-      { std::make_shared<FunctionVolume>(points, std::move(function)) }, store, messenger);
+    std::vector<std::shared_ptr<const bricks::VoxelSource>> pieces;
+    if (messenger.GetRank() == 0)
+    {
+      pieces.push_back(std::make_shared<FunctionVolume>(points, std::move(function)));
+    }
+    object.Field.Voxels = bricks::PublishVolume("function", lattice, pieces, store, messenger);
     object.Field.SetIndexToWorld(GetIndexToWorld(points));
     object.Isovalues = { 0.0 };
     return object;

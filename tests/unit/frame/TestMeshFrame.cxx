@@ -29,13 +29,13 @@ void Clip(rt::Scene& scene)
   region.HalfSpaces = { { { -1.0, -0.2, -0.6 }, glm::dvec3(0.5 * SphereScene::Points) } };
   const auto clip = [&](auto& object) { object.Clipping = region; };
   std::for_each(scene.Objects.begin() + 1, scene.Objects.end(),
-    [&](rt::SceneObject& mesh) { std::visit(clip, mesh); });
+    [&](rt::SceneObject& mesh) { clip(std::get<rt::MeshObject>(mesh)); });
   rt::ClipRegion::Grid boxes;
   boxes.Lower = glm::dvec3(0.3 * SphereScene::Points);
   boxes.Upper = glm::dvec3(0.7 * SphereScene::Points);
   boxes.Kept = 0x7ffffff & ~(1u << 26 | 1u << 13 | 1u);
   region.Boxes = boxes;
-  std::visit(clip, scene.Objects.front());
+  clip(std::get<rt::LatticeIsosurface>(scene.Objects.front()));
 }
 
 rt::Picture Trace(const Keeping& keeping, int ranks, int workers, bool clipped = false)

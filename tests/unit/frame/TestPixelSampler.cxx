@@ -85,36 +85,6 @@ rt::Light GetSlantedLight()
 
 } // namespace
 
-TEST_F(LightTransportTest, HardShadowOfABallOnAFloor)
-{
-  rt::Scene scene;
-  scene.Objects = { this->Publish(GetBallAboveFloor) };
-  scene.Lights = { GetSlantedLight() };
-  scene.Transport.Shadows = true;
-  const rt::Picture picture = this->Trace(scene);
-  const glm::dvec3 toLight = -scene.Lights.front().Direction;
-  int wrong = 0;
-  int dark = 0;
-  for (int y = 0; y < Size; ++y)
-  {
-    for (int x = 0; x < Size; ++x)
-    {
-      const glm::dvec2 place = GetPlace(x, y);
-      if (glm::distance(place, glm::dvec2(BallCenter)) < BallRadius + 0.05)
-      {
-        continue; // the ball itself
-      }
-      const glm::dvec3 toBall = BallCenter - glm::dvec3(place, FloorHeight);
-      const double miss = glm::length(toBall - glm::dot(toBall, toLight) * toLight);
-      const bool shadowed = miss < BallRadius;
-      dark += shadowed;
-      wrong += (GetRed(picture, x, y) == 0) != shadowed && std::fabs(miss - BallRadius) > 0.02;
-    }
-  }
-  EXPECT_GT(dark, 100);
-  EXPECT_EQ(wrong, 0);
-}
-
 TEST_F(LightTransportTest, WithoutShadowsTheFloorIsLitAllOver)
 {
   rt::Scene scene;
@@ -152,29 +122,6 @@ TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
       EXPECT_LT(GetRed(picture, x, y), 245) << distance;
     }
   }
-}
-
-TEST_F(LightTransportTest, ShadowOfATranslucentBallIsDimmedAndTinted)
-{
-  rt::Scene scene;
-  scene.Objects = { this->Publish(GetBall),
-    this->Publish([](const glm::dvec3& p) { return p.z - FloorHeight; }) };
-  std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.Opacity = 0.5f;
-  std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.DiffuseColor = { 1.0f, 0.0f,
-    0.0f };
-  scene.Lights = { GetSlantedLight() };
-  scene.Transport.Shadows = true;
-  const rt::Picture picture = this->Trace(scene);
-  // Where the light through the ball's center meets the floor.
-  const glm::dvec3 way = scene.Lights.front().Direction;
-  const glm::dvec3 place = BallCenter + way * ((FloorHeight - BallCenter.z) / way.z);
-  const auto pixel = static_cast<std::size_t>(std::floor((place.y + 1.0) * Size / 2.0)) * Size +
-    static_cast<std::size_t>(std::floor((place.x + 1.0) * Size / 2.0));
-  // Twice through a surface of opacity one half: half of the light passes straight, and half of the red light that is
-  // scattered.
-  const double full = 255.0 * -way.z;
-  EXPECT_NEAR(picture.Color[4 * pixel], full * 0.75 * 0.75, 2.0);
-  EXPECT_NEAR(picture.Color[4 * pixel + 1], full * 0.5 * 0.5, 2.0);
 }
 
 TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)

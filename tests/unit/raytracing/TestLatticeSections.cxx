@@ -146,7 +146,7 @@ TEST_F(LatticeSections, BeamsForeseeWhatTheirRaysMeet)
       return ray;
     };
     const rt::Ray corners[4] = { getRay(0, 0), getRay(1, 0), getRay(1, 1), getRay(0, 1) };
-    const rt::LatticeSections::Beam beam = sections.FindBeam(corners);
+    const rt::SectionBeam beam = sections.FindBeam(corners);
     const std::set<dsm::BlockId> bricks(beam.Bricks.begin(), beam.Bricks.end());
     known += beam.IsKnown ? 1 : 0;
     foreseen += beam.IsKnown ? bricks.size() : 0;

@@ -181,7 +181,7 @@ TEST(TestTrilinearCell, CubicIsTheFunctionAlongTheLine)
   for (int i = 0; i < 1000; ++i)
   {
     const Way way = CreateWay(random, false);
-    const rt::Cubic cubic(way.Corners, way.Start, way.End - way.Start);
+    const rt::Cubic cubic = rt::GetCubic(way.Corners, way.Start, way.End - way.Start);
     ASSERT_EQ(cubic.Evaluate(0.0), rt::EvaluateTrilinear(way.Corners, way.Start));
     for (const double s : { 0.1, 0.5, 0.9, 1.0 })
     {

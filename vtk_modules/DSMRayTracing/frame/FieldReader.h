@@ -38,10 +38,11 @@ public:
     const std::vector<dsm::BlockId>& ids,
     dsm::FunctionRef<void(dsm::BlockId, const Brick&)> visit) = 0;
 
-  /// How fast values grow at points in the field's world space, on each axis of its index space (see Media of the field);
-  /// 0 where there are none.
+  /// How fast values grow at points in the field's world space, on each axis of its own space (FindSmoothGradients of its
+  /// Sampler); 0 where there are none.
   virtual std::vector<glm::dvec3> FindGradients(
     const AnyField& field, const std::vector<glm::dvec3>& points) = 0;
+
   /// The values at points in the field's world space; NaN where there are none.
   virtual std::vector<double> FindValues(
     const AnyField& field, const std::vector<glm::dvec3>& points) = 0;

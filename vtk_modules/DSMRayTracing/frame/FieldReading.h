@@ -4,10 +4,7 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMCore/base/WorkerSlots.h"
-#include "DSMRayTracing/field/lattice/LatticeMedia.h"
-#include "DSMRayTracing/field/lattice/LatticeSampler.h"
-#include "DSMRayTracing/field/levels/LevelMedia.h"
-#include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/field/FieldSearches.h"
 #include "DSMRayTracing/frame/FieldReader.h"
 #include "DSMRayTracing/frame/ServedWork.h"
 
@@ -58,14 +55,9 @@ public:
     const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
-    std::visit(
-      [&](const auto& field)
-      {
-        using FieldType = std::decay_t<decltype(field)>;
-        typename FieldType::template Media<Store>(this->Blocks, this->Self)
-          .FindGradients(field, points, gradients);
-      },
-      any);
+    this->VisitField(any,
+      [&](const auto& field, const auto& sampler)
+      { sampler.FindSmoothGradients(field, points, gradients); });
     return gradients;
   }
 
@@ -73,27 +65,37 @@ public:
     const AnyField& any, const std::vector<glm::dvec3>& points) override
   {
     std::vector<double> values(points.size(), std::numeric_limits<double>::quiet_NaN());
-    std::visit(
-      [&](const auto& field)
+    this->VisitField(any,
+      [&](const auto& field, const auto& sampler)
       {
-        using FieldType = std::decay_t<decltype(field)>;
-        const typename FieldType::template Sampler<Store> sampler(this->Blocks, this->Self);
+        typename std::decay_t<decltype(field)>::Place place;
         for (std::size_t number = 0; number < points.size(); ++number)
         {
-          typename FieldType::Place place;
           if (sampler.FindPlace(field, points[number], place))
           {
-            sampler.FindValues(*field.Voxels, &place, 1, &values[number]);
+            sampler.FindValues(field.GetValues(), &place, 1, &values[number]);
           }
         }
-      },
-      any);
+      });
     return values;
   }
 
 private:
   /// Bricks are asked for at most twice as many before they are read.
   static constexpr std::size_t Lead = 16;
+
+  /// Calls `visit(field, sampler)`.
+  template <class Visit>
+  void VisitField(const AnyField& any, const Visit& visit) const
+  {
+    std::visit(
+      [&](const auto& field)
+      {
+        using Sampler = typename std::decay_t<decltype(field)>::template Sampler<Store>;
+        visit(field, Sampler(this->Blocks, this->Self));
+      },
+      any);
+  }
 
   template <class T>
   static void Copy(const bricks::VoxelBrick<T>& from, Brick& to)

@@ -34,6 +34,9 @@ struct ExtremumOf
   bool IsMinimum = false;
   ClipRegion Clipping;
 
+  /// See HasLayers.
+  static constexpr bool IsLayered() { return false; }
+
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
   {

@@ -45,6 +45,9 @@ struct MediumOf
   /// From world space to that in which the function measures lengths; the linear part.
   glm::dmat3 WorldToSpace{ 1.0 };
 
+  /// See HasLayers.
+  static constexpr bool IsLayered() { return true; }
+
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
   {
@@ -195,7 +198,7 @@ private:
     std::vector<glm::dvec3> gradients(points.size(), glm::dvec3(0.0));
     if (look.Shade || look.Gradients)
     {
-      this->Media.FindGradients(this->Medium.Field, points, gradients);
+      this->Sampler.FindSmoothGradients(this->Medium.Field, points, gradients);
     }
     for (std::size_t number = 0; number < pieces.size(); ++number)
     {

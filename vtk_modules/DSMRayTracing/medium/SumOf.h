@@ -65,6 +65,9 @@ struct SumOf
     return std::make_shared<const TransferFunction>(first, last, all);
   }
 
+  /// See HasLayers.
+  static constexpr bool IsLayered() { return false; }
+
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const
   {

@@ -2,13 +2,12 @@
 #ifndef rt_SceneMedium_h
 #define rt_SceneMedium_h
 
-#include "DSMRayTracing/field/lattice/LatticeField.h"
-#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/medium/ExtremumOf.h"
 #include "DSMRayTracing/medium/MediumOf.h"
 #include "DSMRayTracing/medium/SumOf.h"
+#include "DSMRayTracing/scene/OtherKind.h"
 
-#include <type_traits>
 #include <variant>
 
 namespace rt
@@ -21,26 +20,25 @@ using LevelMedium = MediumOf<LevelField>;
 using LevelExtremum = ExtremumOf<LevelField>;
 using LevelSum = SumOf<LevelField>;
 
-/// The table of the kinds of media. A kind has
-/// - a description, named here, with AddTo and the name of
-/// - its Tracer, a MediumTracer for a store, whose header SceneTracers-inl.h includes.
-using SceneMedium =
-  std::variant<LatticeMedium, LatticeExtremum, LatticeSum, LevelMedium, LevelExtremum, LevelSum>;
+template <class Fields>
+struct MediumKinds;
+template <class... FieldTypes>
+struct MediumKinds<std::variant<FieldTypes...>>
+{
+  using Any = std::variant<MediumOf<FieldTypes>..., ExtremumOf<FieldTypes>..., SumOf<FieldTypes>...,
+    OtherMedium>;
+};
 
-/// Whether a kind of medium lies in layers along a ray, between which other things may be. The
-/// others show a single value of each ray.
-template <class Kind>
-struct IsLayered : std::false_type
-{
-};
-template <class FieldType>
-struct IsLayered<MediumOf<FieldType>> : std::true_type
-{
-};
+/// A medium of any kind, for each kind of field. A kind has
+/// - a description with AddTo, IsLayered and the name of
+/// - its Tracer, a MediumTracer for a store, in the same header.
+using SceneMedium = MediumKinds<AnyField>::Any;
+
+/// Returns whether a medium lies in layers along a ray, between which other things may be. The others show a single value of
+/// each ray.
 inline bool HasLayers(const SceneMedium& medium)
 {
-  return std::visit(
-    [](const auto& kind) { return IsLayered<std::decay_t<decltype(kind)>>::value; }, medium);
+  return std::visit([](const auto& kind) { return kind.IsLayered(); }, medium);
 }
 
 } // namespace rt

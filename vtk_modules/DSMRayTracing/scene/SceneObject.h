@@ -2,9 +2,9 @@
 #ifndef rt_SceneObject_h
 #define rt_SceneObject_h
 
-#include "DSMRayTracing/field/lattice/LatticeField.h"
-#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/mesh/MeshObject.h"
+#include "DSMRayTracing/scene/OtherKind.h"
 #include "DSMRayTracing/slice/SliceOf.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
 
@@ -18,12 +18,20 @@ using LevelIsosurface = IsosurfaceOf<LevelField>;
 using LatticeSlice = SliceOf<LatticeField>;
 using LevelSlice = SliceOf<LevelField>;
 
-/// The table of the kinds of objects. A kind has
-/// - a description, named here, with IsOpaque, AddTo and the name of
+template <class Fields>
+struct ObjectKinds;
+template <class... FieldTypes>
+struct ObjectKinds<std::variant<FieldTypes...>>
+{
+  using Any =
+    std::variant<IsosurfaceOf<FieldTypes>..., MeshObject, SliceOf<FieldTypes>..., OtherObject>;
+};
+
+/// An object of any kind: surfaces and slices of each kind of field, and meshes. A kind has
+/// - a description with IsOpaque, AddTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header SceneTracers-inl.h includes.
 /// Among surfaces that are equally near, that of the kind that comes first here is visible.
-using SceneObject =
-  std::variant<LatticeIsosurface, LevelIsosurface, MeshObject, LatticeSlice, LevelSlice>;
+using SceneObject = ObjectKinds<AnyField>::Any;
 
 } // namespace rt
 

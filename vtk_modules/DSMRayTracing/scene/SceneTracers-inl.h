@@ -2,17 +2,9 @@
 #ifndef rt_SceneTracers_inl_h
 #define rt_SceneTracers_inl_h
 
-#include "DSMRayTracing/field/lattice/LatticeExtrema.h"
-#include "DSMRayTracing/field/lattice/LatticeMedia.h"
-#include "DSMRayTracing/field/lattice/LatticeSampler.h"
-#include "DSMRayTracing/field/lattice/LatticeSections.h"
-#include "DSMRayTracing/field/lattice/LatticeSurfaces.h"
-#include "DSMRayTracing/field/levels/LevelExtrema.h"
-#include "DSMRayTracing/field/levels/LevelMedia.h"
-#include "DSMRayTracing/field/levels/LevelSampler.h"
-#include "DSMRayTracing/field/levels/LevelSections.h"
-#include "DSMRayTracing/field/levels/LevelSurfaces.h"
+#include "DSMRayTracing/field/FieldSearches.h"
 #include "DSMRayTracing/mesh/MeshTracer.h"
+#include "DSMRayTracing/scene/OtherKindDescription.h"
 #include "DSMRayTracing/scene/SceneTracers.h"
 #include "DSMRayTracing/slice/SliceTracer.h"
 #include "DSMRayTracing/surface/IsosurfaceTracer.h"
@@ -20,21 +12,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 namespace rt
 {
 
+template <class Store, class Kind>
+auto CreateTracer(Store& store, typename Store::Worker& worker, const Kind& described)
+{
+  return std::make_unique<typename Kind::template Tracer<Store>>(store, worker, described);
+}
+template <class Store, class TracerType>
+auto CreateTracer(
+  Store& store, typename Store::Worker& worker, const OtherKind<TracerType>& described)
+{
+  return described.Get().CreateTracer(store, worker);
+}
+
 template <class Store>
 SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, const Scene& scene)
 {
-  const auto create = [&](const auto& described)
-  {
-    using Tracer = typename std::decay_t<decltype(described)>::template Tracer<Store>;
-    return std::make_unique<Tracer>(store, worker, described);
-  };
   SceneTracers tracers;
   for (std::size_t kind = 0; kind < std::variant_size_v<SceneObject>; ++kind)
   {
@@ -43,7 +41,7 @@ SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, co
       if (scene.Objects[number].index() == kind)
       {
         auto tracer = std::visit([&](const auto& known) -> std::unique_ptr<ObjectTracer>
-          { return create(known); },
+          { return CreateTracer(store, worker, known); },
           scene.Objects[number]);
         tracer->SetNumber(static_cast<std::int32_t>(number));
         tracers.Objects.push_back(std::move(tracer));
@@ -53,7 +51,7 @@ SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, co
   for (const SceneMedium& medium : scene.Media)
   {
     tracers.Media.push_back(std::visit([&](const auto& known) -> std::unique_ptr<const MediumTracer>
-      { return create(known); },
+      { return CreateTracer(store, worker, known); },
       medium));
   }
   return tracers;

@@ -26,7 +26,6 @@ class SliceTracer final : public ObjectTracer
 public:
   using Place = typename FieldType::Place;
   using Sections = typename FieldType::Sections;
-  using Beam = typename Sections::Beam;
   using Hit = typename Sections::Hit;
 
   /// Keeps references.
@@ -44,16 +43,17 @@ public:
 
   std::unique_ptr<ObjectBeam> FindBeam(const Ray corners[4]) const override
   {
-    return std::make_unique<Beam>(this->Planes.FindBeam(corners));
+    return std::make_unique<SectionBeam>(this->Planes.FindBeam(corners));
   }
 
   bool Prefetch(const ObjectBeam& beam, std::size_t count) const override
   {
-    const std::vector<dsm::BlockId>& bricks = static_cast<const Beam&>(beam).Bricks;
+    const std::vector<dsm::BlockId>& bricks = static_cast<const SectionBeam&>(beam).Bricks;
     const auto prefetch = [&](const typename FieldType::Values& values)
     {
-      return this->Blocks.Prefetch(
-        *values.Segment, bricks.data(), std::min(count, bricks.size()), {});
+      const dsm::BlockSegment* const segment = FieldType::GetSegment(values);
+      return segment &&
+        this->Blocks.Prefetch(*segment, bricks.data(), std::min(count, bricks.size()), {});
     };
     const auto& field = this->Object.Field.GetValues();
     const bool anyAbsent = this->ReadsField && prefetch(field);
@@ -64,7 +64,7 @@ public:
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const override
   {
-    auto* const known = static_cast<Beam*>(beam);
+    auto* const known = static_cast<SectionBeam*>(beam);
     this->Object.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {
@@ -75,7 +75,7 @@ public:
           {
             if (known)
             {
-              known->Reach(hits[index].At.Brick);
+              known->Reach(this->Object.Field.FindBrick(hits[index].At).Id);
             }
             nearest[index].Take(*this, hits[index], rays[index]);
           });
@@ -137,7 +137,7 @@ public:
 
   Brick FindBrick(const ObjectHit& hit) const override
   {
-    return { this->Object.Field.GetValues().Segment.get(), hit.Get<Hit>().At.Brick };
+    return this->Object.Field.FindBrick(hit.Get<Hit>().At);
   }
 
 private:

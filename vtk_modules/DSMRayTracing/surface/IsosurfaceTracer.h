@@ -141,7 +141,7 @@ public:
 
   Brick FindBrick(const ObjectHit& hit) const override
   {
-    return this->Surfaces.FindBrick(this->Object.Field, hit.Get<Hit>().At);
+    return this->Object.Field.FindBrick(hit.Get<Hit>().At);
   }
 
 private:

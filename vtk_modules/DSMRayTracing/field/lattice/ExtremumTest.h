@@ -2,10 +2,10 @@
 #ifndef rt_ExtremumTest_h
 #define rt_ExtremumTest_h
 
-#include "DSMBricks/base/ValueRange.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 
@@ -14,30 +14,6 @@
 
 namespace rt
 {
-
-/// Tells of a range of values whether any is above a limit, all times a sign: what BeamDescent asks.
-class ExtremumPredicate
-{
-public:
-  ExtremumPredicate(double sign, double limit)
-    : Sign(sign)
-    , Limit(limit)
-  {
-  }
-
-  bool operator()(const bricks::ValueRange& range) const
-  {
-    return (*this)(static_cast<double>(range.First), static_cast<double>(range.Last));
-  }
-  bool operator()(double first, double last) const
-  {
-    return first <= last && this->Sign * (this->Sign > 0.0 ? last : first) > this->Limit;
-  }
-
-private:
-  double Sign;
-  double Limit;
-};
 
 /// Test of TypedPacketBrick for an extremum; see IsovalueTest.
 template <class T>

@@ -3,11 +3,11 @@
 #define rt_IsosurfacePacketSearch_txx
 
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/BeamDescent.h"
 #include "DSMRayTracing/field/lattice/HitGradient.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 #include "DSMRayTracing/field/lattice/IsovalueTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"

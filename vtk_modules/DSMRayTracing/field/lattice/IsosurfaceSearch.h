@@ -4,11 +4,11 @@
 
 #include "DSMRayTracing/field/IsosurfaceHit.h"
 #include "DSMRayTracing/field/LevelSets.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/BrickAccess.h"
 #include "DSMRayTracing/field/lattice/BrickWalk.h"
 #include "DSMRayTracing/field/lattice/GridRay.h"
 #include "DSMRayTracing/field/lattice/HitGradient.h"
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/ray/CellHit.h"
 #include "DSMRayTracing/ray/Ray.h"

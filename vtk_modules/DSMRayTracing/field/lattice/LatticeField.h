@@ -29,11 +29,9 @@ class LatticeSurfaces;
 class LatticeSections;
 
 /// Values at the points of a lattice, uniform or rectilinear, in bricks of voxels, and where they are in the world. A
-/// kind of field: IsosurfaceOf says what one has to offer.
+/// kind of field: see Field.h.
 struct LatticeField
 {
-  /// Sampled values. If several fields have the same points, one may define the surfaces and
-  /// another their colors.
   using Values = bricks::VoxelField;
   using Place = LatticePlace;
   template <class Store>
@@ -75,6 +73,12 @@ struct LatticeField
   LatticePlace GetPlace(const glm::dvec3& point) const;
   /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.
   double GetGrowth(const glm::dvec3& gradient) const;
+  static const dsm::BlockSegment* GetSegment(const Values& values) { return values.Segment.get(); }
+  /// The brick of a place.
+  ObjectTracer::Brick FindBrick(const LatticePlace& place) const
+  {
+    return { this->Voxels->Segment.get(), place.Brick };
+  }
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
   /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a cell of mean size, because hits in its large

@@ -5,8 +5,6 @@
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
 #include "DSMRayTracing/field/lattice/BeamDescent.h"
-#include "DSMRayTracing/field/lattice/HitGradient.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/field/lattice/LatticePackets.h"
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
@@ -16,16 +14,11 @@
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <tuple>
-#include <vector>
 
 namespace rt
 {
@@ -68,82 +61,7 @@ public:
       { return this->MarchPacket(field, function, bricks, packet, light); });
   }
 
-  /// How fast values grow on each axis of the index space at points in world space: CellNeighbourhood::GetGradient.
-  void FindGradients(const LatticeField& field, const std::vector<glm::dvec3>& points,
-    std::vector<glm::dvec3>& gradients) const
-  {
-    std::vector<Asked> all(points.size());
-    for (std::size_t number = 0; number < points.size(); ++number)
-    {
-      all[number].Number = number;
-      FindCell(field, points[number], all[number]);
-    }
-    std::sort(all.begin(), all.end(),
-      [](const Asked& one, const Asked& other)
-      { return std::tie(one.Brick, one.Number) < std::tie(other.Brick, other.Number); });
-    bricks::Dispatch(field.Voxels->Lattice.GetScalarType(),
-      [&](auto sample)
-      {
-        using T = decltype(sample);
-        for (auto begin = all.begin(); begin != all.end();)
-        {
-          const auto end = std::find_if(
-            begin, all.end(), [&](const Asked& asked) { return asked.Brick != begin->Brick; });
-          const auto beyond = this->FindGradientsWithin<T>(field, begin, end, gradients);
-          for (const Asked* asked : beyond)
-          {
-            HitGradient::Find<T>(this->Blocks, this->Self, *field.Voxels, asked->Brick, asked->Cell,
-              0.0, &gradients[asked->Number].x);
-          }
-          begin = end;
-        }
-      });
-  }
-
 private:
-  /// A gradient to be found.
-  struct Asked
-  {
-    dsm::BlockId Brick;
-    CellHit Cell;
-    std::size_t Number;
-  };
-
-  static void FindCell(const LatticeField& field, const glm::dvec3& point, Asked& asked)
-  {
-    const LatticePlace place = field.GetPlace(point);
-    asked.Brick = place.Brick;
-    const int edge = field.Voxels->Lattice.GetEdge();
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      asked.Cell.Cell[axis] = place.Cell[axis] % edge;
-    }
-    const glm::dvec3 inside = place.IndexPoint - glm::dvec3(place.Cell);
-    asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
-  }
-
-  /// Finds gradients at positions in the same brick. Returns the positions whose samples are not
-  /// all in the brick.
-  template <class T, class Iterator>
-  std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
-    Iterator end, std::vector<glm::dvec3>& gradients) const
-  {
-    std::vector<const Asked*> beyond;
-    const IsovalueLevel<T> level(0.0);
-    const typename Store::Pin pin =
-      this->Blocks.Acquire(this->Self, *field.Voxels->Segment, begin->Brick);
-    const bricks::VoxelBrick<T> voxels(pin.GetData());
-    for (auto asked = begin; asked != end; ++asked)
-    {
-      if (!HitGradient::FindWithin(
-            *field.Voxels, asked->Brick, voxels, asked->Cell, level, &gradients[asked->Number].x))
-      {
-        beyond.push_back(&*asked);
-      }
-    }
-    return beyond;
-  }
-
   RayMask MarchPacket(const LatticeField& field, const TransferFunction& function,
     BeamBricks& bricks, RayPacket& packet, MediumLight& light) const
   {

@@ -6,10 +6,14 @@
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
+#include "DSMRayTracing/ray/CellHit.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <vector>
 
 namespace rt
 {
@@ -55,6 +59,10 @@ public:
   void FindGradients(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     glm::dvec3* gradients) const;
 
+  /// How fast values grow on each axis of the index (or grid) space at points in world space: CellNeighbourhood::GetGradient.
+  void FindSmoothGradients(const LatticeField& field, const std::vector<glm::dvec3>& points,
+    std::vector<glm::dvec3>& gradients) const;
+
   /// Samples fields of colors (PackedColor), each channel separately. Returns the places that have
   /// data.
   RayMask FindColors(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
@@ -63,6 +71,13 @@ public:
 private:
   template <class T>
   class Reader;
+  /// A smooth gradient to be found.
+  struct Asked
+  {
+    dsm::BlockId Brick;
+    CellHit Cell;
+    std::size_t Number;
+  };
   enum class Corners
   {
     Finite, ///< corners of a cell that holds data
@@ -78,6 +93,12 @@ private:
   template <class Evaluate>
   RayMask FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     double* values, const Evaluate& evaluate) const;
+
+  static void FindCell(const LatticeField& field, const glm::dvec3& point, Asked& asked);
+  /// Finds smooth gradients at positions in the same brick. Returns the positions whose samples are not all in the brick.
+  template <class T, class Iterator>
+  std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
+    Iterator end, std::vector<glm::dvec3>& gradients) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -3,6 +3,8 @@
 #define rt_LatticeSampler_txx
 
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/HitGradient.h"
+#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/TrilinearCell.h"
 #include "DSMRayTracing/look/PackedColor.h"
 
@@ -13,6 +15,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 namespace rt
 {
@@ -246,6 +249,75 @@ void LatticeSampler<Store>::FindGradients(const bricks::VoxelField& field,
           }
         });
     });
+}
+
+template <class Store>
+void LatticeSampler<Store>::FindSmoothGradients(const LatticeField& field,
+  const std::vector<glm::dvec3>& points, std::vector<glm::dvec3>& gradients) const
+{
+  std::vector<Asked> all(points.size());
+  for (std::size_t number = 0; number < points.size(); ++number)
+  {
+    all[number].Number = number;
+    FindCell(field, points[number], all[number]);
+  }
+  std::sort(all.begin(), all.end(),
+    [](const Asked& one, const Asked& other)
+    { return std::tie(one.Brick, one.Number) < std::tie(other.Brick, other.Number); });
+  bricks::Dispatch(field.Voxels->Lattice.GetScalarType(),
+    [&](auto sample)
+    {
+      using T = decltype(sample);
+      for (auto begin = all.begin(); begin != all.end();)
+      {
+        const auto end = std::find_if(
+          begin, all.end(), [&](const Asked& asked) { return asked.Brick != begin->Brick; });
+        const auto beyond = this->FindGradientsWithin<T>(field, begin, end, gradients);
+        for (const Asked* asked : beyond)
+        {
+          HitGradient::Find<T>(this->Blocks, this->Self, *field.Voxels, asked->Brick, asked->Cell,
+            0.0, &gradients[asked->Number].x);
+        }
+        begin = end;
+      }
+    });
+}
+
+template <class Store>
+void LatticeSampler<Store>::FindCell(
+  const LatticeField& field, const glm::dvec3& point, Asked& asked)
+{
+  const LatticePlace place = field.GetPlace(point);
+  asked.Brick = place.Brick;
+  const int edge = field.Voxels->Lattice.GetEdge();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    asked.Cell.Cell[axis] = place.Cell[axis] % edge;
+  }
+  const glm::dvec3 inside = place.IndexPoint - glm::dvec3(place.Cell);
+  asked.Cell.Local = Lanes(inside.x, inside.y, inside.z, 0.0);
+}
+
+template <class Store>
+template <class T, class Iterator>
+std::vector<const typename LatticeSampler<Store>::Asked*>
+LatticeSampler<Store>::FindGradientsWithin(
+  const LatticeField& field, Iterator begin, Iterator end, std::vector<glm::dvec3>& gradients) const
+{
+  std::vector<const Asked*> beyond;
+  const IsovalueLevel<T> level(0.0);
+  const typename Store::Pin pin =
+    this->Blocks.Acquire(this->Self, *field.Voxels->Segment, begin->Brick);
+  const bricks::VoxelBrick<T> voxels(pin.GetData());
+  for (auto asked = begin; asked != end; ++asked)
+  {
+    if (!HitGradient::FindWithin(
+          *field.Voxels, asked->Brick, voxels, asked->Cell, level, &gradients[asked->Number].x))
+    {
+      beyond.push_back(&*asked);
+    }
+  }
+  return beyond;
 }
 
 template <class Store>

@@ -122,7 +122,7 @@ bool LatticeSections::FindNext(const Ray& ray, const Line& line, Hit& hit) const
   return found;
 }
 
-LatticeSections::Beam LatticeSections::FindBeam(const Ray corners[4]) const
+SectionBeam LatticeSections::FindBeam(const Ray corners[4]) const
 {
   struct Section
   {
@@ -130,8 +130,9 @@ LatticeSections::Beam LatticeSections::FindBeam(const Ray corners[4]) const
     const IndexPlane* Plane;
     Box Bounds;
   };
-  Beam beam;
+  SectionBeam beam;
   beam.Usable = true;
+  beam.IsKnown = true;
   std::vector<Section> sections;
   for (std::size_t number = 0; number < this->Planes.size(); ++number)
   {

@@ -8,13 +8,10 @@
 #include "DSMRayTracing/field/lattice/GridRay.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
-#include "DSMRayTracing/object/ObjectBeam.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/vec3.hpp>
 
-#include <algorithm>
-#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -41,24 +38,8 @@ public:
   /// whether there is one.
   bool FindNext(const Ray& ray, const Line& line, Hit& hit) const;
 
-  /// The bricks that the planes pass through within a beam.
-  struct Beam final : ObjectBeam
-  {
-    bool IsKnown = true;              ///< false: rays may meet other bricks, too
-    std::vector<dsm::BlockId> Bricks; ///< plane by plane, from the nearest one
-
-    bool MayMeet() const override { return !this->IsKnown || !this->Bricks.empty(); }
-    /// Tells that a ray has come to a brick.
-    void Reach(dsm::BlockId brick)
-    {
-      const auto begin = this->Bricks.begin() + static_cast<std::ptrdiff_t>(this->Reached);
-      const auto found = std::find(begin, this->Bricks.end(), brick);
-      this->Reached +=
-        found == this->Bricks.end() ? 0 : static_cast<std::size_t>(found - begin) + 1;
-    }
-  };
   /// Finds the beam of all rays between the four `corners`, which are in order around it.
-  Beam FindBeam(const Ray corners[4]) const;
+  SectionBeam FindBeam(const Ray corners[4]) const;
 
 private:
   /// A plane in index (or grid) space: the points x with dot(Normal, x) == Offset.

@@ -2,9 +2,9 @@
 #ifndef rt_LatticeSurfaces_h
 #define rt_LatticeSurfaces_h
 
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/IsosurfacePacketSearch.h"
 #include "DSMRayTracing/field/lattice/IsosurfaceSearch.h"
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 
 #include <glm/vec3.hpp>
@@ -68,11 +68,6 @@ public:
     RayMask wanted, glm::dvec3* transmittances) const
   {
     return this->Packets.Attenuate(sets, sheets, rays, wanted, transmittances);
-  }
-
-  static ObjectTracer::Brick FindBrick(const LatticeField& field, const LatticePlace& place)
-  {
-    return { field.Voxels->Segment.get(), field.Voxels->Lattice.FindBrick(place.IndexPoint) };
   }
 
 private:

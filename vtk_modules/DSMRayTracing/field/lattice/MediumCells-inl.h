@@ -9,6 +9,7 @@
 
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
 #include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
 #include "DSMRayTracing/look/TransferFunction.h"
@@ -175,16 +176,9 @@ public:
 
 private:
   static constexpr double MostPieces = 64.0;
-  /// Error tolerance for the optical depth in a cell.
-  static constexpr double Tolerance = 1.0 / 2048.0;
-  static constexpr double BendFactor = 0.125 / Tolerance;
-  /// Error tolerance for the color of a piece: the front of a piece hides part of its back.
-  static constexpr double ColorTolerance = 1.0 / 1024.0;
-  static constexpr double ColorFactor = 1.0 / (12.0 * ColorTolerance);
-  /// Pieces that are described for a unit of optical depth.
-  static constexpr double DepthFactor = 4.0;
-  /// In bins: on a shorter way, the function is nearly constant, and differences would be rounding.
-  static constexpr double ShortWay = 1e-7;
+  static constexpr double BendFactor = 0.125 / MediumTolerance::Depth;
+  static constexpr double ColorFactor = 1.0 / (12.0 * MediumTolerance::Color);
+  static constexpr double ShortWay = MediumTolerance::ShortWay;
 
   /// The pieces that ways are cut into, and where rays are on them.
   struct Pieces
@@ -246,7 +240,7 @@ private:
       // Pieces are described one by one, and light changes along the way.
       const Vector parts = hn::Mul(length,
         hn::Max(hn::Set(tag, 1.0 / this->Light.JoinedLength),
-          hn::Mul(behavior.Extinction, hn::Set(tag, DepthFactor))));
+          hn::Mul(behavior.Extinction, hn::Set(tag, MediumTolerance::DescribedPieces))));
       count = hn::Max(count, hn::Min(hn::Ceil(parts), hn::Set(tag, MostPieces)));
     }
     HWY_ALIGN double counts[Width];

@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A part of a way at whose two ends a cubic differs in sign; see End in TrilinearIsosurface.cxx.
+/// A part of a way at whose two ends a cubic differs in sign; see End in Cubic.cxx.
 template <class D>
 struct Bracket
 {

@@ -6,6 +6,8 @@
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/MediumTolerance.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
@@ -20,24 +22,6 @@
 
 namespace rt
 {
-
-/// Tells of a range of values whether a medium may be seen there: what BeamDescent asks. Keeps a reference.
-class TransferPredicate
-{
-public:
-  explicit TransferPredicate(const TransferFunction& function)
-    : Function(function)
-  {
-  }
-
-  bool operator()(const bricks::ValueRange& range) const
-  {
-    return this->Function.IsSeen(range.First, range.Last);
-  }
-
-private:
-  const TransferFunction& Function;
-};
 
 /// Test of TypedPacketBrick for a medium; see IsovalueTest. Keeps a reference.
 template <class T>
@@ -99,7 +83,8 @@ public:
       const double length =
         this->Planes ? this->SetWidths(samples, first, counts) : edge * this->CellLength;
       const double factor = length * behavior.Change * scale * 0.125;
-      const bool isSmooth = isFinite && factor * this->Kernel.FindRoughness(samples) <= Tolerance;
+      const bool isSmooth =
+        isFinite && factor * this->Kernel.FindRoughness(samples) <= MediumTolerance::Depth;
       part.Smooth |= std::uint64_t{ isSmooth } << macrocell;
     }
   }
@@ -140,9 +125,6 @@ private:
     }
     return GetLongestWay(edges);
   }
-
-  /// Error tolerance for the optical depth in a macrocell.
-  static constexpr double Tolerance = 1.0 / 2048.0;
 
   const TransferFunction& Function;
   const PacketKernel& Kernel;

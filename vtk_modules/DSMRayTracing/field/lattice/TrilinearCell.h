@@ -3,6 +3,7 @@
 #define rt_TrilinearCell_h
 
 #include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/field/Cubic.h"
 
 namespace rt
 {
@@ -43,50 +44,36 @@ inline void DifferentiateTrilinear(const double corners[8], const Lanes& point, 
   }
 }
 
-/// The cubic that the trilinear function is along a line: c[0] + c[1] s + c[2] s^2 + c[3] s^3.
-struct Cubic
+/// The cubic that the trilinear function is at start + s direction. The constant term is EvaluateTrilinear(corners, start),
+/// bit for bit.
+inline Cubic GetCubic(const double corners[8], const Lanes& start, const Lanes& direction)
 {
-  double Coefficients[4];
-
-  /// At start + s direction. The constant term is EvaluateTrilinear(corners, start), bit for bit.
-  Cubic(const double corners[8], const Lanes& start, const Lanes& direction)
+  Cubic cubic;
+  double linear[4][2];
+  for (int edge = 0; edge < 4; ++edge)
   {
-    double linear[4][2];
-    for (int edge = 0; edge < 4; ++edge)
-    {
-      const double a = corners[2 * edge];
-      const double b = corners[2 * edge + 1];
-      linear[edge][0] = Interpolate(a, b, start[0]);
-      linear[edge][1] = direction[0] * (b - a);
-    }
-    double quadratic[2][3];
-    for (int face = 0; face < 2; ++face)
-    {
-      const double* a = linear[2 * face];
-      const double* b = linear[2 * face + 1];
-      quadratic[face][0] = Interpolate(a[0], b[0], start[1]);
-      quadratic[face][1] = Interpolate(a[1], b[1], start[1]) + direction[1] * (b[0] - a[0]);
-      quadratic[face][2] = direction[1] * (b[1] - a[1]);
-    }
-    const double* a = quadratic[0];
-    const double* b = quadratic[1];
-    this->Coefficients[0] = Interpolate(a[0], b[0], start[2]);
-    this->Coefficients[1] = Interpolate(a[1], b[1], start[2]) + direction[2] * (b[0] - a[0]);
-    this->Coefficients[2] = Interpolate(a[2], b[2], start[2]) + direction[2] * (b[1] - a[1]);
-    this->Coefficients[3] = direction[2] * (b[2] - a[2]);
+    const double a = corners[2 * edge];
+    const double b = corners[2 * edge + 1];
+    linear[edge][0] = Interpolate(a, b, start[0]);
+    linear[edge][1] = direction[0] * (b - a);
   }
-
-  double Evaluate(double s) const
+  double quadratic[2][3];
+  for (int face = 0; face < 2; ++face)
   {
-    const double* c = this->Coefficients;
-    return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+    const double* a = linear[2 * face];
+    const double* b = linear[2 * face + 1];
+    quadratic[face][0] = Interpolate(a[0], b[0], start[1]);
+    quadratic[face][1] = Interpolate(a[1], b[1], start[1]) + direction[1] * (b[0] - a[0]);
+    quadratic[face][2] = direction[1] * (b[1] - a[1]);
   }
-  double EvaluateDerivative(double s) const
-  {
-    const double* c = this->Coefficients;
-    return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
-  }
-};
+  const double* a = quadratic[0];
+  const double* b = quadratic[1];
+  cubic.Coefficients[0] = Interpolate(a[0], b[0], start[2]);
+  cubic.Coefficients[1] = Interpolate(a[1], b[1], start[2]) + direction[2] * (b[0] - a[0]);
+  cubic.Coefficients[2] = Interpolate(a[2], b[2], start[2]) + direction[2] * (b[1] - a[1]);
+  cubic.Coefficients[3] = direction[2] * (b[2] - a[2]);
+  return cubic;
+}
 
 } // namespace rt
 

@@ -28,6 +28,15 @@ bricks::Index3 LevelField::GetBlockCell(const LatticePlace& place) const
   return bricks::DivideDown(place.GetCell(), lattice.GetScales().Get(level));
 }
 
+bool LevelField::FindPlace(const glm::dvec3& point, LatticePlace& place) const
+{
+  const auto& bounds = this->Voxels->Lattice.GetBounds();
+  const glm::dvec3 at = this->ToIndex(point);
+  place = { glm::clamp(at, bounds[0], bounds[1]), glm::ivec3(0), bricks::LevelLattice::None };
+  const glm::dvec3 slack = 1e-9 * (bounds[1] - bounds[0]);
+  return glm::all(glm::lessThanEqual(glm::abs(at - place.IndexPoint), slack));
+}
+
 ObjectTracer::Brick LevelField::FindBrick(const glm::dvec3& place) const
 {
   const bricks::LevelLattice& lattice = this->Voxels->Lattice;

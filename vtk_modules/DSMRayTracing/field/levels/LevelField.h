@@ -3,6 +3,7 @@
 #define rt_LevelField_h
 
 #include "DSMBricks/levels/LevelVoxels.h"
+#include "DSMRayTracing/field/Field.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
@@ -26,12 +27,11 @@ template <class Store>
 class LevelSampler;
 template <class Store>
 class LevelSurfaces;
-class LevelSections;
 
 /// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function, see
-/// bricks::LevelNodes. A kind of field: IsosurfaceOf says what one has to offer. A Place is in the index space of its brick's
+/// bricks::LevelNodes. A kind of field: see Field.h. A Place is in the index space of its brick's
 /// level, all else in that of level 0.
-struct LevelField
+struct LevelField : WalkedField<LevelField>
 {
   using Values = bricks::LevelVoxels;
   using Place = LatticePlace;
@@ -41,7 +41,6 @@ struct LevelField
   using Surfaces = LevelSurfaces<Store>;
   template <class Store>
   using Media = LevelMedia<Store>;
-  using Sections = LevelSections;
   template <class Store>
   using Extrema = LevelExtrema<Store>;
 
@@ -70,8 +69,17 @@ struct LevelField
   {
     return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
   }
+  /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their border is
+  /// within. Its cell is not known yet.
+  bool FindPlace(const glm::dvec3& point, LatticePlace& place) const;
   /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the index space.
   double GetGrowth(const glm::dvec3& gradient) const;
+  static const dsm::BlockSegment* GetSegment(const Values& values) { return values.Segment.get(); }
+  /// The brick of a place.
+  ObjectTracer::Brick FindBrick(const LatticePlace& place) const
+  {
+    return { this->Voxels->Segment.get(), place.Brick };
+  }
   /// A brick that has a place (world space) in its box, of the finest level of such; of no segment, where none is.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
   /// Length of the shortest edge of a cell of the finest level, in the space to which the matrix leads.

@@ -7,7 +7,6 @@
 #include "DSMRayTracing/field/lattice/TransferTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/field/levels/LevelPackets.h"
-#include "DSMRayTracing/field/levels/LevelSampler.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
@@ -33,7 +32,6 @@ public:
   LevelMedia(Store& store, typename Store::Worker& worker)
     : Blocks(store)
     , Self(worker)
-    , Values(store, worker)
     , Kernel(PacketKernel::GetBest())
     , Unsorted(std::make_unique<MediumLight>())
   {
@@ -90,20 +88,6 @@ public:
       });
   }
 
-  /// How fast values grow on each axis of the index space of level 0 at points in world space.
-  void FindGradients(const LevelField& field, const std::vector<glm::dvec3>& points,
-    std::vector<glm::dvec3>& gradients) const
-  {
-    for (std::size_t number = 0; number < points.size(); ++number)
-    {
-      LatticePlace place;
-      if (this->Values.FindPlace(field, points[number], place))
-      {
-        this->Values.FindSmoothGradient(*field.Voxels, place, gradients[number]);
-      }
-    }
-  }
-
 private:
   /// `finestPiece`: length of a piece of the finest level that is described as one; 0: pieces are
   /// not described.
@@ -148,7 +132,6 @@ private:
 
   Store& Blocks;
   typename Store::Worker& Self;
-  LevelSampler<Store> Values;
   const PacketKernel& Kernel;
   std::unique_ptr<MediumLight> Unsorted; ///< during March; kept for its memory
 };

@@ -10,6 +10,9 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cstddef>
+#include <vector>
+
 namespace rt
 {
 
@@ -56,6 +59,20 @@ public:
   /// place's cell, one step of its level to each side; one-sided where there are no data.
   void FindSmoothGradient(
     const bricks::LevelVoxels& field, const LatticePlace& place, glm::dvec3& gradient) const;
+
+  /// How fast values grow on each axis of the index space of level 0 at points in world space.
+  void FindSmoothGradients(const LevelField& field, const std::vector<glm::dvec3>& points,
+    std::vector<glm::dvec3>& gradients) const
+  {
+    for (std::size_t number = 0; number < points.size(); ++number)
+    {
+      LatticePlace place;
+      if (this->FindPlace(field, points[number], place))
+      {
+        this->FindSmoothGradient(*field.Voxels, place, gradients[number]);
+      }
+    }
+  }
 
   /// There are no fields of colors.
   RayMask FindColors(const bricks::LevelVoxels&, const LatticePlace*, RayMask, glm::vec4*) const

@@ -53,11 +53,6 @@ public:
   RayMask Attenuate(const Sets& sets, const std::vector<glm::dvec3>& sheets, const Ray* rays,
     RayMask wanted, glm::dvec3* transmittances) const;
 
-  static ObjectTracer::Brick FindBrick(const LevelField& field, const LatticePlace& place)
-  {
-    return { field.Voxels->Segment.get(), place.Brick };
-  }
-
 private:
   struct Nearest;
 

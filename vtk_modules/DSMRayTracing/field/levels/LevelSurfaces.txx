@@ -3,9 +3,9 @@
 #define rt_LevelSurfaces_txx
 
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/lattice/HitGradient.h"
 #include "DSMRayTracing/field/lattice/IsovalueLevel.h"
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
 #include "DSMRayTracing/field/lattice/IsovalueTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/field/levels/LevelPackets.h"

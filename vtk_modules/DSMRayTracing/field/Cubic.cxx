@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/TrilinearIsosurface.h"
+#include "DSMRayTracing/field/Cubic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +83,38 @@ double GetScale(double largest)
   return scale;
 }
 
-/// The places in (0, 1) where the derivative vanishes, ascending; returns how many.
+/// Two places of different sides between which the first crossing is; false when there is none.
+/// `last`: the value at 1.
+bool FindBracket(const Cubic& cubic, double last, End& begin, End& end)
+{
+  const bool startInside = cubic.Coefficients[0] >= 0.0;
+  const bool endInside = last >= 0.0;
+  const int changes = CountSignChanges(cubic, last);
+  if (changes == 0)
+  {
+    return false;
+  }
+  begin = { 0.0, cubic.Coefficients[0] };
+  if (changes > 1)
+  {
+    double extrema[2];
+    const int count = FindExtrema(cubic, extrema);
+    for (int i = 0; i < count; ++i)
+    {
+      end = { extrema[i], cubic.Evaluate(extrema[i]) };
+      if ((end.Value >= 0.0) != startInside)
+      {
+        return true;
+      }
+      begin = end;
+    }
+  }
+  end = { 1.0, last };
+  return startInside != endInside;
+}
+
+} // namespace
+
 int FindExtrema(const Cubic& cubic, double extrema[2])
 {
   // Squares of the coefficients may be too small or too large for numbers; of exact multiples of
@@ -117,44 +148,11 @@ int FindExtrema(const Cubic& cubic, double extrema[2])
   return count;
 }
 
-/// Two places of different sides between which the first crossing is; false when there is none.
-/// `last`: the value at 1.
-bool FindBracket(const Cubic& cubic, double last, End& begin, End& end)
+bool FindFirstCrossing(const Cubic& cubic, double last, double& s)
 {
-  const bool startInside = cubic.Coefficients[0] >= 0.0;
-  const bool endInside = last >= 0.0;
-  const int changes = CountSignChanges(cubic, last);
-  if (changes == 0)
-  {
-    return false;
-  }
-  begin = { 0.0, cubic.Coefficients[0] };
-  if (changes > 1)
-  {
-    double extrema[2];
-    const int count = FindExtrema(cubic, extrema);
-    for (int i = 0; i < count; ++i)
-    {
-      end = { extrema[i], cubic.Evaluate(extrema[i]) };
-      if ((end.Value >= 0.0) != startInside)
-      {
-        return true;
-      }
-      begin = end;
-    }
-  }
-  end = { 1.0, last };
-  return startInside != endInside;
-}
-
-} // namespace
-
-bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes& end, double& s)
-{
-  const Cubic cubic(corners, start, end - start);
   End before;
   End after;
-  if (!FindBracket(cubic, EvaluateTrilinear(corners, end), before, after))
+  if (!FindBracket(cubic, last, before, after))
   {
     return false;
   }
@@ -162,10 +160,8 @@ bool FindFirstCrossing(const double corners[8], const Lanes& start, const Lanes&
   return true;
 }
 
-int CountCrossings(const double corners[8], const Lanes& start, const Lanes& end)
+int CountCrossings(const Cubic& cubic, double last)
 {
-  const Cubic cubic(corners, start, end - start);
-  const double last = EvaluateTrilinear(corners, end);
   bool inside = cubic.Coefficients[0] >= 0.0;
   int crossings = 0;
   const auto pass = [&](double value)
@@ -186,12 +182,11 @@ int CountCrossings(const double corners[8], const Lanes& start, const Lanes& end
   return crossings;
 }
 
-bool HasCrossing(const double corners[8], const Lanes& start, const Lanes& end)
+bool HasCrossing(const Cubic& cubic, double last)
 {
   End before;
   End after;
-  return FindBracket(
-    Cubic(corners, start, end - start), EvaluateTrilinear(corners, end), before, after);
+  return FindBracket(cubic, last, before, after);
 }
 
 } // namespace rt

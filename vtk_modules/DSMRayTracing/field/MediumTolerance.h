@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MediumTolerance_h
+#define rt_MediumTolerance_h
+
+namespace rt
+{
+
+/// How finely a way through a medium is cut into pieces, in each of which values are taken for linear.
+struct MediumTolerance
+{
+  /// Error of the optical depth of a way.
+  static constexpr double Depth = 1.0 / 2048.0;
+  /// Error of the color of a piece: the front of a piece hides part of its back.
+  static constexpr double Color = 1.0 / 1024.0;
+  /// Pieces that are described for a unit of optical depth.
+  static constexpr double DescribedPieces = 4.0;
+  /// In bins of the function: on a shorter way, it is nearly constant, and differences would be rounding.
+  static constexpr double ShortWay = 1e-7;
+};
+
+} // namespace rt
+
+#endif
