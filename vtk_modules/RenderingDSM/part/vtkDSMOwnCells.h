@@ -7,7 +7,7 @@
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
-#include "DSMRayTracing/field/lattice/IsovaluePredicate.h"
+#include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/frame/FieldReader.h"
 
 #include "vtkSmartPointer.h"
