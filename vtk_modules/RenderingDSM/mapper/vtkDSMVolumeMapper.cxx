@@ -89,12 +89,12 @@ void AddBounds(vtkDataObject* data, vtkBoundingBox& box)
 vtkStandardNewMacro(vtkDSMVolumeMapper);
 
 vtkDSMVolumeMapper::vtkDSMVolumeMapper()
-  : SurfaceProperty(vtkSmartPointer<vtkProperty>::New())
-  , LightOptions(vtkSmartPointer<vtkDSMLightOptions>::New())
-  , MemoryOptions(vtkSmartPointer<vtkDSMMemoryOptions>::New())
-  , GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
+  : GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
   , Original(std::make_unique<vtkDSMOriginalData>())
 {
+  this->SurfaceProperty = vtkSmartPointer<vtkProperty>::New();
+  this->LightOptions = vtkSmartPointer<vtkDSMLightOptions>::New();
+  this->MemoryOptions = vtkSmartPointer<vtkDSMMemoryOptions>::New();
   vtkDSMSceneVolume::AddKind<vtkDSMSceneVolume>();
 }
 
@@ -421,7 +421,9 @@ void vtkDSMVolumeMapper::ShallowCopy(vtkAbstractMapper* mapper)
   }
   if (auto* other = vtkDSMVolumeMapper::SafeDownCast(mapper))
   {
-    this->CopyOwn(other);
+    static_cast<vtkDSMVolumeSettings&>(*this) = *other;
+    *this->Original = *other->Original;
+    this->Modified();
   }
 }
 
@@ -447,62 +449,6 @@ void vtkDSMVolumeMapper::CopyVolumeMapper(vtkVolumeMapper* other)
   }
 }
 
-void vtkDSMVolumeMapper::CopyOwn(vtkDSMVolumeMapper* other)
-{
-  *this->Original = *other->Original;
-  this->IsoArray = other->IsoArray;
-  this->IsoArrayOnCells = other->IsoArrayOnCells;
-  this->IsoComponent = other->IsoComponent;
-  this->IgnoreValues = other->IgnoreValues;
-  std::copy_n(other->ValidRange, 2, this->ValidRange);
-  this->IsoValues = other->IsoValues;
-  this->AutomaticIsoValue = other->AutomaticIsoValue;
-  this->SurfacesOnly = other->SurfacesOnly;
-  this->Scattering = other->Scattering;
-  this->OpacityArray = other->OpacityArray;
-  this->OpacityArrayOnCells = other->OpacityArrayOnCells;
-  this->OpacityComponent = other->OpacityComponent;
-  this->Slicing = other->Slicing;
-  this->Slices = other->Slices;
-  this->SlicePlanes = other->SlicePlanes;
-  this->SliceLighting = other->SliceLighting;
-  this->InterpolateSlices = other->InterpolateSlices;
-  this->SliceOpacity = other->SliceOpacity;
-  this->Capping = other->Capping;
-  this->CapOpacity = other->CapOpacity;
-  this->CapSide = other->CapSide;
-  this->ColorArray = other->ColorArray;
-  this->ColorArrayOnCells = other->ColorArrayOnCells;
-  this->MapScalars = other->MapScalars;
-  this->ScalarVisibility = other->ScalarVisibility;
-  this->BlockLooks = other->BlockLooks;
-  this->BlockScalarVisibility = other->BlockScalarVisibility;
-  this->LookupTable = other->LookupTable;
-  this->SurfaceProperty = other->SurfaceProperty;
-  this->BackfaceProperty = other->BackfaceProperty;
-  this->LightOptions = other->LightOptions;
-  this->MemoryOptions = other->MemoryOptions;
-  this->MakesScene = other->MakesScene;
-  this->AutoAdjustSampleDistances = other->AutoAdjustSampleDistances;
-  this->LockSampleDistanceToInputSpacing = other->LockSampleDistanceToInputSpacing;
-  this->UseJittering = other->UseJittering;
-  this->SampleDistance = other->SampleDistance;
-  this->ImageSampleDistance = other->ImageSampleDistance;
-  this->MinimumImageSampleDistance = other->MinimumImageSampleDistance;
-  this->MaximumImageSampleDistance = other->MaximumImageSampleDistance;
-  this->MaxMemoryInBytes = other->MaxMemoryInBytes;
-  this->MaxMemoryFraction = other->MaxMemoryFraction;
-  this->ReportProgress = other->ReportProgress;
-  this->RequestedRenderMode = other->RequestedRenderMode;
-  this->InterpolationMode = other->InterpolationMode;
-  std::copy_n(other->NumberOfSamples, 3, this->NumberOfSamples);
-  this->RequestedResamplingMode = other->RequestedResamplingMode;
-  this->FreezeFocalPoint = other->FreezeFocalPoint;
-  this->ResamplerUpdateTolerance = other->ResamplerUpdateTolerance;
-  this->UseDefaultThreading = other->UseDefaultThreading;
-  this->Modified();
-}
-
 int vtkDSMVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
@@ -513,45 +459,21 @@ int vtkDSMVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "IsoArray: " << this->IsoArray << "\n";
-  os << indent << "IsoArrayOnCells: " << this->IsoArrayOnCells << "\n";
-  os << indent << "IsoComponent: " << this->IsoComponent << "\n";
-  os << indent << "IgnoreValues: " << this->IgnoreValues << "\n";
-  os << indent << "ValidRange: " << this->ValidRange[0] << " " << this->ValidRange[1] << "\n";
+#define vtkDSMPrint(name, type, value) os << indent << #name << ": " << this->name << "\n";
+  VTK_DSM_VOLUME_SETTINGS(vtkDSMPrint)
+#undef vtkDSMPrint
   os << indent << "IsoValues:";
   for (const double value : this->IsoValues)
   {
     os << " " << value;
   }
   os << "\n";
-  os << indent << "AutomaticIsoValue: " << this->AutomaticIsoValue << "\n";
+  os << indent << "ValidRange: " << this->ValidRange[0] << " " << this->ValidRange[1] << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "SuggestedRange: " << this->SuggestedRange[0] << " " << this->SuggestedRange[1]
      << "\n";
-  os << indent << "SurfacesOnly: " << this->SurfacesOnly << "\n";
-  os << indent << "Scattering: " << this->Scattering << "\n";
-  os << indent << "OpacityArray: " << this->OpacityArray << "\n";
-  os << indent << "OpacityArrayOnCells: " << this->OpacityArrayOnCells << "\n";
-  os << indent << "OpacityComponent: " << this->OpacityComponent << "\n";
-  os << indent << "Slicing: " << this->Slicing << "\n";
   os << indent << "Slices: " << this->Slices.size() << "\n";
   os << indent << "SlicePoints: " << this->SlicePoints[0] << " " << this->SlicePoints[1] << " "
      << this->SlicePoints[2] << "\n";
-  os << indent << "SlicePlanes: " << this->SlicePlanes.Get() << "\n";
-  os << indent << "SliceLighting: " << this->SliceLighting << "\n";
-  os << indent << "InterpolateSlices: " << this->InterpolateSlices << "\n";
-  os << indent << "SliceOpacity: " << this->SliceOpacity.Get() << "\n";
-  os << indent << "Capping: " << this->Capping << "\n";
-  os << indent << "CapOpacity: " << this->CapOpacity << "\n";
-  os << indent << "CapSide: " << this->CapSide << "\n";
-  os << indent << "ColorArray: " << this->ColorArray << "\n";
-  os << indent << "ColorArrayOnCells: " << this->ColorArrayOnCells << "\n";
-  os << indent << "MapScalars: " << this->MapScalars << "\n";
-  os << indent << "ScalarVisibility: " << this->ScalarVisibility << "\n";
   os << indent << "BlockLooks: " << this->BlockLooks.size() << "\n";
-  os << indent << "BlockScalarVisibility: " << this->BlockScalarVisibility << "\n";
-  os << indent << "LookupTable: " << this->LookupTable.Get() << "\n";
-  os << indent << "SurfaceProperty: " << this->SurfaceProperty.Get() << "\n";
-  os << indent << "BackfaceProperty: " << this->BackfaceProperty.Get() << "\n";
-  os << indent << "MakesScene: " << this->MakesScene << "\n";
 }

@@ -36,29 +36,21 @@
 #ifndef vtkDSMVolumeMapper_h
 #define vtkDSMVolumeMapper_h
 
-#include "vtkDSMBlockLooks.h"      // for ivars
+#include "vtkDSMVolumeSettings.h"  // for the base class
 #include "vtkMath.h"               // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
-#include "vtkSmartPointer.h"       // for ivars
 #include "vtkVolumeMapper.h"
 
-#include <array>   // for ivars
-#include <memory>  // for ivars
-#include <string>  // for ivars
-#include <utility> // for ivars
-#include <vector>  // for ivars
+#include <array>  // for SetSuggestedRange
+#include <memory> // for ivars
 
 class vtkDSMKnownBounds;
-class vtkDSMLightOptions;
-class vtkDSMMemoryOptions;
 class vtkDSMOriginalData;
-class vtkPiecewiseFunction;
 class vtkPlane;
-class vtkPlaneCollection;
-class vtkProperty;
-class vtkScalarsToColors;
 
-class VTKRENDERINGDSM_EXPORT vtkDSMVolumeMapper : public vtkVolumeMapper
+class VTKRENDERINGDSM_EXPORT vtkDSMVolumeMapper
+  : public vtkVolumeMapper
+  , private vtkDSMVolumeSettings
 {
 public:
   static vtkDSMVolumeMapper* New();
@@ -421,38 +413,9 @@ public:
 
   ///@{
   /**
-   * What vtkGPUVolumeRayCastMapper is told about its samples and its graphics card. Kept, and without
-   * effect: a ray finds the exact place of the surface, and memory is vtkDSMMemoryOptions' matter.
-   */
-  vtkSetMacro(AutoAdjustSampleDistances, vtkTypeBool);
-  vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
-  vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
-  vtkSetMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
-  vtkGetMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
-  vtkBooleanMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
-  vtkSetMacro(UseJittering, vtkTypeBool);
-  vtkGetMacro(UseJittering, vtkTypeBool);
-  vtkBooleanMacro(UseJittering, vtkTypeBool);
-  vtkSetMacro(SampleDistance, float);
-  vtkGetMacro(SampleDistance, float);
-  vtkSetMacro(ImageSampleDistance, float);
-  vtkGetMacro(ImageSampleDistance, float);
-  vtkSetMacro(MinimumImageSampleDistance, float);
-  vtkGetMacro(MinimumImageSampleDistance, float);
-  vtkSetMacro(MaximumImageSampleDistance, float);
-  vtkGetMacro(MaximumImageSampleDistance, float);
-  vtkSetMacro(MaxMemoryInBytes, vtkIdType);
-  vtkGetMacro(MaxMemoryInBytes, vtkIdType);
-  vtkSetMacro(MaxMemoryFraction, float);
-  vtkGetMacro(MaxMemoryFraction, float);
-  vtkSetMacro(ReportProgress, bool);
-  vtkGetMacro(ReportProgress, bool);
-  ///@}
-
-  ///@{
-  /**
-   * What vtkAMRVolumeMapper is told about the uniform grid that it resamples AMR to, and about the mapper that shows
-   * it. Kept, and without effect: AMR is shown as it is, at all of its levels.
+   * What vtkGPUVolumeRayCastMapper is told about its samples and its graphics card, and vtkAMRVolumeMapper about the
+   * uniform grid that it resamples AMR to, and about the mapper that shows it. Kept, and without effect: a ray finds the
+   * exact place of the surface, memory is vtkDSMMemoryOptions' matter, and AMR is shown as it is, at all of its levels.
    */
   enum RenderModes
   {
@@ -462,8 +425,6 @@ public:
     TextureRenderMode,
     GPURenderMode
   };
-  vtkSetMacro(RequestedRenderMode, int);
-  vtkGetMacro(RequestedRenderMode, int);
   void SetRequestedRenderModeToDefault() { this->SetRequestedRenderMode(DefaultRenderMode); }
   void SetRequestedRenderModeToRayCastAndTexture()
   {
@@ -472,8 +433,6 @@ public:
   void SetRequestedRenderModeToRayCast() { this->SetRequestedRenderMode(RayCastRenderMode); }
   void SetRequestedRenderModeToTexture() { this->SetRequestedRenderMode(TextureRenderMode); }
   void SetRequestedRenderModeToGPU() { this->SetRequestedRenderMode(GPURenderMode); }
-  vtkSetMacro(InterpolationMode, int);
-  vtkGetMacro(InterpolationMode, int);
   void SetInterpolationModeToNearestNeighbor()
   {
     this->SetInterpolationMode(VTK_NEAREST_INTERPOLATION);
@@ -482,14 +441,14 @@ public:
   void SetInterpolationModeToCubic() { this->SetInterpolationMode(VTK_CUBIC_INTERPOLATION); }
   vtkSetVector3Macro(NumberOfSamples, int);
   vtkGetVector3Macro(NumberOfSamples, int);
-  vtkSetMacro(RequestedResamplingMode, int);
-  vtkGetMacro(RequestedResamplingMode, int);
-  vtkSetMacro(FreezeFocalPoint, bool);
-  vtkGetMacro(FreezeFocalPoint, bool);
-  vtkSetMacro(ResamplerUpdateTolerance, double);
-  vtkGetMacro(ResamplerUpdateTolerance, double);
-  vtkSetMacro(UseDefaultThreading, bool);
-  vtkGetMacro(UseDefaultThreading, bool);
+  vtkBooleanMacro(AutoAdjustSampleDistances, vtkTypeBool);
+  vtkBooleanMacro(LockSampleDistanceToInputSpacing, vtkTypeBool);
+  vtkBooleanMacro(UseJittering, vtkTypeBool);
+#define vtkDSMSetting(name, type, value)                                                           \
+  vtkSetMacro(name, type);                                                                         \
+  vtkGetMacro(name, type);
+  VTK_DSM_KEPT_SETTINGS(vtkDSMSetting)
+#undef vtkDSMSetting
   ///@}
 
   /**
@@ -516,61 +475,10 @@ private:
   void operator=(const vtkDSMVolumeMapper&) = delete;
 
   void CopyVolumeMapper(vtkVolumeMapper* other);
-  void CopyOwn(vtkDSMVolumeMapper* other);
 
-  std::string IsoArray;
-  bool IsoArrayOnCells = false;
-  int IsoComponent = 0;
-  bool IgnoreValues = false;
-  double ValidRange[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MAX };
-  std::vector<double> IsoValues;
-  bool AutomaticIsoValue = false;
   double SuggestedIsoValue = vtkMath::Nan();
   double SuggestedRange[2] = { vtkMath::Nan(), vtkMath::Nan() };
-  bool SurfacesOnly = false;
-  double Scattering = 0.0;
-  std::string OpacityArray;
-  bool OpacityArrayOnCells = false;
-  int OpacityComponent = 0;
-  bool Slicing = false;
-  std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
-  vtkSmartPointer<vtkPlaneCollection> SlicePlanes;
   int SlicePoints[3] = { 0, 0, 0 };
-  bool SliceLighting = false;
-  bool InterpolateSlices = true;
-  vtkSmartPointer<vtkPiecewiseFunction> SliceOpacity;
-  bool Capping = false;
-  bool CapOpacity = true;
-  int CapSide = ValuesAbove;
-  std::string ColorArray;
-  bool ColorArrayOnCells = false;
-  bool MapScalars = true;
-  bool ScalarVisibility = false;
-  vtkDSMBlockLooks BlockLooks;
-  bool BlockScalarVisibility = false;
-  vtkSmartPointer<vtkScalarsToColors> LookupTable;
-  vtkSmartPointer<vtkProperty> SurfaceProperty;
-  vtkSmartPointer<vtkProperty> BackfaceProperty;
-  vtkSmartPointer<vtkDSMLightOptions> LightOptions;
-  vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;
-  bool MakesScene = true;
-  vtkTypeBool AutoAdjustSampleDistances = 1;
-  vtkTypeBool LockSampleDistanceToInputSpacing = 0;
-  vtkTypeBool UseJittering = 0;
-  float SampleDistance = 1.0f;
-  float ImageSampleDistance = 1.0f;
-  float MinimumImageSampleDistance = 1.0f;
-  float MaximumImageSampleDistance = 10.0f;
-  vtkIdType MaxMemoryInBytes = 0;
-  float MaxMemoryFraction = 0.75f;
-  bool ReportProgress = true;
-  int RequestedRenderMode = DefaultRenderMode;
-  int InterpolationMode = VTK_CUBIC_INTERPOLATION;
-  int NumberOfSamples[3] = { 128, 128, 128 };
-  int RequestedResamplingMode = 0;
-  bool FreezeFocalPoint = false;
-  double ResamplerUpdateTolerance = 1e-7;
-  bool UseDefaultThreading = false;
   int Pieces = 1; ///< as many as the input was last asked for
   std::unique_ptr<vtkDSMKnownBounds> GlobalBounds;
   std::unique_ptr<vtkDSMOriginalData> Original;

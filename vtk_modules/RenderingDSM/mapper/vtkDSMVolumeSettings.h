@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkDSMVolumeSettings_h
+#define vtkDSMVolumeSettings_h
+
+#include "vtkDSMBlockLooks.h" // for ivars
+#include "vtkSmartPointer.h"  // for ivars
+#include "vtkType.h"          // for ivars
+
+#include <string>  // for ivars
+#include <utility> // for ivars
+#include <vector>  // for ivars
+
+class vtkDSMLightOptions;
+class vtkDSMMemoryOptions;
+class vtkPiecewiseFunction;
+class vtkPlaneCollection;
+class vtkProperty;
+class vtkScalarsToColors;
+
+/// Single values among the settings of a vtkDSMVolumeMapper: name, type and default, in the order in which they are printed.
+#define VTK_DSM_VOLUME_SETTINGS(X)                                                                 \
+  X(IsoArray, std::string, "")                                                                     \
+  X(IsoArrayOnCells, bool, false)                                                                  \
+  X(IsoComponent, int, 0)                                                                          \
+  X(IgnoreValues, bool, false)                                                                     \
+  X(AutomaticIsoValue, bool, false)                                                                \
+  X(SurfacesOnly, bool, false)                                                                     \
+  X(Scattering, double, 0.0)                                                                       \
+  X(OpacityArray, std::string, "")                                                                 \
+  X(OpacityArrayOnCells, bool, false)                                                              \
+  X(OpacityComponent, int, 0)                                                                      \
+  X(Slicing, bool, false)                                                                          \
+  X(SlicePlanes, vtkSmartPointer<vtkPlaneCollection>, {})                                          \
+  X(SliceLighting, bool, false)                                                                    \
+  X(InterpolateSlices, bool, true)                                                                 \
+  X(SliceOpacity, vtkSmartPointer<vtkPiecewiseFunction>, {})                                       \
+  X(Capping, bool, false)                                                                          \
+  X(CapOpacity, bool, true)                                                                        \
+  X(CapSide, int, 0)                                                                               \
+  X(ColorArray, std::string, "")                                                                   \
+  X(ColorArrayOnCells, bool, false)                                                                \
+  X(MapScalars, bool, true)                                                                        \
+  X(ScalarVisibility, bool, false)                                                                 \
+  X(BlockScalarVisibility, bool, false)                                                            \
+  X(LookupTable, vtkSmartPointer<vtkScalarsToColors>, {})                                          \
+  X(SurfaceProperty, vtkSmartPointer<vtkProperty>, {})                                             \
+  X(BackfaceProperty, vtkSmartPointer<vtkProperty>, {})                                            \
+  X(LightOptions, vtkSmartPointer<vtkDSMLightOptions>, {})                                         \
+  X(MemoryOptions, vtkSmartPointer<vtkDSMMemoryOptions>, {})                                       \
+  X(MakesScene, bool, true)                                                                        \
+  VTK_DSM_KEPT_SETTINGS(X)
+/// Those of vtkGPUVolumeRayCastMapper and of vtkAMRVolumeMapper that are kept without effect.
+#define VTK_DSM_KEPT_SETTINGS(X)                                                                   \
+  X(AutoAdjustSampleDistances, vtkTypeBool, 1)                                                     \
+  X(LockSampleDistanceToInputSpacing, vtkTypeBool, 0)                                              \
+  X(UseJittering, vtkTypeBool, 0)                                                                  \
+  X(SampleDistance, float, 1.0f)                                                                   \
+  X(ImageSampleDistance, float, 1.0f)                                                              \
+  X(MinimumImageSampleDistance, float, 1.0f)                                                       \
+  X(MaximumImageSampleDistance, float, 10.0f)                                                      \
+  X(MaxMemoryInBytes, vtkIdType, 0)                                                                \
+  X(MaxMemoryFraction, float, 0.75f)                                                               \
+  X(ReportProgress, bool, true)                                                                    \
+  X(RequestedRenderMode, int, 0)                                                                   \
+  X(InterpolationMode, int, VTK_CUBIC_INTERPOLATION)                                               \
+  X(RequestedResamplingMode, int, 0)                                                               \
+  X(FreezeFocalPoint, bool, false)                                                                 \
+  X(ResamplerUpdateTolerance, double, 1e-7)                                                        \
+  X(UseDefaultThreading, bool, false)
+
+/// All that a user sets of a vtkDSMVolumeMapper, beside what its base classes have.
+struct vtkDSMVolumeSettings
+{
+#define vtkDSMDeclare(name, type, value) type name = value;
+  VTK_DSM_VOLUME_SETTINGS(vtkDSMDeclare)
+#undef vtkDSMDeclare
+  std::vector<double> IsoValues;
+  double ValidRange[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MAX };
+  std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
+  vtkDSMBlockLooks BlockLooks;
+  int NumberOfSamples[3] = { 128, 128, 128 }; ///< of vtkAMRVolumeMapper; kept without effect
+};
+
+#endif
