@@ -8,6 +8,7 @@
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <numeric>
 #include <optional>

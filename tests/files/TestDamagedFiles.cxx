@@ -4,7 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/open/SeriesFile.h"
 
 #include <gtest/gtest.h>
 

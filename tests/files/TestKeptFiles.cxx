@@ -2,6 +2,7 @@
 // Files in the user's cache directory are used only if they are what the program kept there.
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 

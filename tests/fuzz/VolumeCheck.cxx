@@ -5,6 +5,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 #include "IndexCheck.h"
 

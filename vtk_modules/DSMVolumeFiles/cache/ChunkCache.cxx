@@ -6,7 +6,7 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/open/SeriesFile.h"
 
 #include <atomic>
 #include <exception>

@@ -38,6 +38,11 @@ struct ChunkStorage
   std::size_t HaloRecordBytes = 0;
 };
 
+/// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
+ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes);
+/// As rows that follow one another, or planes when a plane is small.
+ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes);
+
 /// Divides each chunk into several of neighboring rows, if the chunks that a brick lies in are large
 /// together, as slices are, and if rows of a chunk can be read separately. Then readers hold only the rows
 /// that they need.

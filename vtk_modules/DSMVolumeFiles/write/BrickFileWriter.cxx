@@ -5,7 +5,7 @@
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/hdf/HdfLibrary.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 #include "DSMVolumeFiles/write/PartState.h"
 #include "DSMVolumeFiles/write/PathClaim.h"

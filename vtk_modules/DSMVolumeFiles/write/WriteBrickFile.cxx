@@ -12,7 +12,7 @@
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/HdfFile.h"
+#include "DSMVolumeFiles/hdf/HdfFile.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 #include "DSMVolumeFiles/write/ReducedOrigin.h"
 
