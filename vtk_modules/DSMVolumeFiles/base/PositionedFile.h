@@ -2,6 +2,8 @@
 #ifndef vol_PositionedFile_h
 #define vol_PositionedFile_h
 
+#include "DSMVolumeFiles/base/Descriptor.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,7 +18,6 @@ class PositionedFile
 public:
   /// Throws dsm::Error when it cannot be opened; WouldWait (WithoutWaiting), as a disk has to be asked.
   explicit PositionedFile(std::string path);
-  ~PositionedFile();
   PositionedFile(const PositionedFile&) = delete;
   PositionedFile& operator=(const PositionedFile&) = delete;
 
@@ -71,8 +72,9 @@ private:
   static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
 
   std::string Path;
-  int Descriptor = -1;
-  int Scattered = -1; ///< the same file, in which the system does not read ahead; none: it is small
+  Descriptor Whole;
+  Descriptor
+    Scattered; ///< the same file, in which the system does not read ahead; none: it is small
   bool OfDirectory = false;
   std::uint64_t Bytes = 0;
   std::uint64_t Stamp = 0;

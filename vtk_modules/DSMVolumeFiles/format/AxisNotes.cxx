@@ -235,21 +235,22 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
   for (int axis = 0; axis < 3; ++axis)
   {
     AxisNote& note = own[static_cast<std::size_t>(axis)];
-    const auto isFinite = [](double number) { return std::isfinite(number); };
+    const auto refuse = [&](const std::string& why)
+    {
+      throw FileError(path,
+        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
+          ") that " + why +
+          ". Enter Spacing (and Origin) of the reader to place the samples yourself.");
+    };
     if (!Ascend(note.Coordinates) &&
       !Ascend({ note.Coordinates.rbegin(), note.Coordinates.rend() }))
     {
-      throw FileError(path,
-        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
-          ") that neither rise nor fall everywhere. Enter Spacing (and Origin) of the reader to "
-          "place the samples yourself.");
+      refuse("neither rise nor fall everywhere");
     }
-    if (!std::all_of(note.Coordinates.begin(), note.Coordinates.end(), isFinite))
+    if (!std::all_of(note.Coordinates.begin(), note.Coordinates.end(),
+          [](double number) { return std::isfinite(number); }))
     {
-      throw FileError(path,
-        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
-          ") that are not finite. Enter Spacing (and Origin) of the reader to place the samples "
-          "yourself.");
+      refuse("are not finite");
     }
     Even(note);
     geometry.Origin[axis] = note.Origin;

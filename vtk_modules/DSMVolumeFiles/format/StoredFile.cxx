@@ -292,23 +292,10 @@ bool StoredFile::ReadWithHalo(
 
 bool StoredFile::IsFill(std::size_t array, int step, const bricks::Box& box) const
 {
-  const bricks::Index3 edges = this->GetStoredGrid(array).ChunkSamples;
-  const bricks::Index3 first = box.Min / edges;
-  const bricks::Index3 last = (box.Max - bricks::Index3(1)) / edges;
-  for (std::int64_t z = first.z; z <= last.z; ++z)
-  {
-    for (std::int64_t y = first.y; y <= last.y; ++y)
-    {
-      for (std::int64_t x = first.x; x <= last.x; ++x)
-      {
-        if (!this->IsMissing(array, step, { x, y, z }))
-        {
-          return false;
-        }
-      }
-    }
-  }
-  return !box.IsEmpty();
+  bool isFill = !box.IsEmpty();
+  bricks::ForEachIndex(this->GetStoredGrid(array).GetChunks(box),
+    [&](const bricks::Index3& chunk) { isFill = isFill && this->IsMissing(array, step, chunk); });
+  return isFill;
 }
 
 void StoredFile::Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const

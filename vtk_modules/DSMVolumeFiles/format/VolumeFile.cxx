@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 
 #include <glm/ext/vector_uint3_sized.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
@@ -159,20 +160,13 @@ void CheckGeometry(const std::string& path, const FileGeometry& geometry)
   }
   // Find the volume spanned by axes of length 1. Rounding errors are below this limit.
   constexpr double least = 1e-9;
-  double axes[3][3];
+  glm::dmat3 axes(0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     const double length = std::hypot(m[axis], m[3 + axis], m[6 + axis]);
-    for (int row = 0; row < 3; ++row)
-    {
-      axes[axis][row] = length > 0.0 ? m[3 * row + axis] / length : 0.0;
-    }
+    axes[axis] = glm::dvec3(m[axis], m[3 + axis], m[6 + axis]) / (length > 0.0 ? length : 1.0);
   }
-  const double(&x)[3] = axes[0];
-  const double(&y)[3] = axes[1];
-  const double(&z)[3] = axes[2];
-  const double determinant = x[0] * (y[1] * z[2] - y[2] * z[1]) -
-    x[1] * (y[0] * z[2] - y[2] * z[0]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
+  const double determinant = glm::determinant(axes);
   if (!(std::abs(determinant) >= least))
   {
     refuse("direction matrix", "the matrix is singular");

@@ -14,8 +14,6 @@ namespace
 /// No object header, node or block of an index is as large.
 constexpr std::uint64_t LargestPart = std::uint64_t(1) << 26;
 
-constexpr std::size_t ChecksumBytes = 4;
-
 } // namespace
 
 std::optional<HdfBytes> HdfBytes::Read(
@@ -35,7 +33,7 @@ std::optional<HdfBytes> HdfBytes::ReadChecked(const PositionedFile& file, std::u
   std::uint64_t count, const char* signature, std::uint64_t version)
 {
   std::optional<HdfBytes> bytes = Read(file, offset, count);
-  return bytes && bytes->Has(0, 5 + ChecksumBytes) && bytes->Begins(signature) &&
+  return bytes && bytes->Has(0, 5 + Checksum) && bytes->Begins(signature) &&
       bytes->Get(4, 1) == version && bytes->HasRightChecksum()
     ? std::move(bytes)
     : std::nullopt;
@@ -48,12 +46,12 @@ bool HdfBytes::Begins(const char* signature) const
 
 bool HdfBytes::HasRightChecksum() const
 {
-  if (!this->Has(0, ChecksumBytes))
+  if (!this->Has(0, Checksum))
   {
     return false;
   }
-  const std::size_t before = this->Values.size() - ChecksumBytes;
-  return GetLookup3(this->Values.data(), before) == this->Get(before, ChecksumBytes);
+  const std::size_t before = this->Values.size() - Checksum;
+  return GetLookup3(this->Values.data(), before) == this->Get(before, Checksum);
 }
 
 } // namespace vol

@@ -22,6 +22,9 @@ constexpr std::uint64_t HdfUndefined = UINT64_MAX;
 class HdfBytes
 {
 public:
+  static constexpr std::size_t Address = 8;  ///< bytes of one
+  static constexpr std::size_t Checksum = 4; ///< likewise
+
   HdfBytes() = default;
   explicit HdfBytes(std::vector<std::byte> values)
     : Values(std::move(values))

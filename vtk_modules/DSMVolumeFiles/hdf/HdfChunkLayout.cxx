@@ -14,8 +14,6 @@ namespace
 /// Pieces of an object header; their messages may lead from one to the next, also in a circle.
 constexpr std::size_t MostParts = 1000;
 
-constexpr std::size_t ChecksumBytes = 4;
-
 /// Looks for the layout among the messages of an object header.
 class HeaderReader
 {
@@ -43,7 +41,8 @@ public:
       }
       this->IsCompact = true;
       this->Prefix = (flags & 4) != 0 ? 6 : 4;
-      this->Add(header, before + width + start->Get(before, width) + ChecksumBytes, before + width);
+      this->Add(
+        header, before + width + start->Get(before, width) + HdfBytes::Checksum, before + width);
     }
     else if (start->Get(0, 1) == 1)
     {
@@ -79,7 +78,7 @@ private:
   /// Returns true when the layout was among them.
   bool ReadMessages(const HdfBytes& messages, std::size_t place)
   {
-    const std::size_t end = messages.GetCount() - (this->IsCompact ? ChecksumBytes : 0);
+    const std::size_t end = messages.GetCount() - (this->IsCompact ? HdfBytes::Checksum : 0);
     while (place < end && this->Prefix <= end - place)
     {
       const std::uint64_t kind = messages.Get(place, this->IsCompact ? 1 : 2);
@@ -168,32 +167,23 @@ private:
   static bool ReadIndexKind(const Take& take, std::uint64_t flags, HdfChunkLayout& layout)
   {
     using Index = HdfChunkLayout::Index;
-    switch (take(1))
+    constexpr std::pair<Index, std::size_t> kinds[] = { { Index::Single, 0 },
+      { Index::Implicit, 0 }, { Index::FixedArray, 1 }, { Index::ExtensibleArray, 5 },
+      { Index::Tree2, 6 } };
+    const std::uint64_t kind = take(1);
+    if (kind < 1 || kind > std::size(kinds))
     {
-      case 1:
-        layout.Kind = Index::Single;
-        layout.IsFiltered = (flags & 2) != 0;
-        layout.SingleBytes = layout.IsFiltered ? take(8) : 0;
-        layout.SingleSkippedFilters = static_cast<std::uint32_t>(layout.IsFiltered ? take(4) : 0);
-        return true;
-      case 2:
-        layout.Kind = Index::Implicit;
-        return true;
-      case 3:
-        layout.Kind = Index::FixedArray;
-        take(1);
-        return true;
-      case 4:
-        layout.Kind = Index::ExtensibleArray;
-        take(5);
-        return true;
-      case 5:
-        layout.Kind = Index::Tree2;
-        take(6);
-        return true;
-      default:
-        return false;
+      return false;
     }
+    layout.Kind = kinds[kind - 1].first;
+    take(kinds[kind - 1].second);
+    layout.IsFiltered = layout.Kind == Index::Single && (flags & 2) != 0;
+    if (layout.IsFiltered)
+    {
+      layout.SingleBytes = take(8);
+      layout.SingleSkippedFilters = static_cast<std::uint32_t>(take(4));
+    }
+    return true;
   }
 
   const PositionedFile& File;

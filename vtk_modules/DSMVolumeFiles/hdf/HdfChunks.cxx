@@ -124,30 +124,25 @@ std::optional<HdfChunkTable> FindHdfChunks(hid_t dataset, const PositionedFile& 
   std::vector<hsize_t> most(edges.size());
   H5Sget_simple_extent_dims(space.Get(), samples.data(), most.data());
   std::vector<std::uint64_t> counts(edges.size());
-  std::uint64_t all = 1;
   for (std::size_t axis = 0; axis < edges.size(); ++axis)
   {
     counts[axis] = samples[axis] / edges[axis] + (samples[axis] % edges[axis] != 0 ? 1 : 0);
-    const auto product = MultiplyWithin(FileLimits::ArrayBytes, { all, counts[axis] });
-    if (!product)
-    {
-      throw FileError(file.GetPath(),
-        "has an invalid header: the dataset '" + name + "' declares too many chunks.");
-    }
-    all = *product;
+  }
+  const auto all = MultiplyWithin(FileLimits::ArrayBytes, counts);
+  if (!all)
+  {
+    throw FileError(file.GetPath(),
+      "has an invalid header: the dataset '" + name + "' declares too many chunks.");
   }
   constexpr std::size_t oftenEnough = 1 << 14;
   bool isStopped = false;
   const HdfHandle properties(H5Dget_create_plist(dataset), &H5Pclose);
   const bool isFiltered = H5Pget_nfilters(properties.Get()) != 0;
-  std::uint64_t plainBytes = 1;
-  for (const std::uint64_t edge : layout->Edges) // the last one is the bytes of a sample
-  {
-    plainBytes = MultiplyWithin(UINT32_MAX, { plainBytes, edge }).value_or(0);
-  }
+  // The last one is the bytes of a sample.
+  const std::uint64_t plainBytes = MultiplyWithin(UINT32_MAX, layout->Edges).value_or(0);
   HdfChunkTable table;
   // Each takes at least an address in the index.
-  table.Reserve(std::min(all, file.GetBytes() / sizeof(std::uint64_t)));
+  table.Reserve(std::min(*all, file.GetBytes() / sizeof(std::uint64_t)));
   const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
   std::vector<std::uint64_t> expected(edges.begin(), edges.end());
   expected.push_back(H5Tget_size(type.Get()));

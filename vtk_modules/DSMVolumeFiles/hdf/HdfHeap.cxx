@@ -120,16 +120,12 @@ bool IsWhole(hid_t attribute, std::size_t count, const std::string& path)
 
 void CheckHdfHeap(hid_t attribute, std::size_t count)
 {
-  const auto getText = [=](auto get)
-  { return GetHdfText([=](char* to, std::size_t size) { return get(attribute, to, size); }); };
-  const std::string path =
-    getText([](hid_t id, char* to, std::size_t size) { return H5Fget_name(id, to, size); });
+  const std::string path = GetHdfText(&H5Fget_name, attribute);
   if (!IsWhole(attribute, count, path))
   {
-    const std::string object =
-      getText([](hid_t id, char* to, std::size_t size) { return H5Iget_name(id, to, size); });
+    const std::string object = GetHdfText(&H5Iget_name, attribute);
     const std::string name =
-      getText([](hid_t id, char* to, std::size_t size) { return H5Aget_name(id, size, to); });
+      GetHdfText([=](char* to, std::size_t size) { return H5Aget_name(attribute, size, to); });
     throw FileError(path,
       "is damaged: the attribute " + Quote(name) + " of " + Quote(object) +
         " refers to a place in the file's global heap that does not have its value.");

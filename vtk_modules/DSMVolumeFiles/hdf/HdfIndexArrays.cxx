@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The arrays in which HDF5 keeps where chunks are: entries that are found by a chunk's number.
-#include "DSMVolumeFiles/hdf/HdfIndexReader.h"
+#include "DSMVolumeFiles/hdf/HdfChunkIndex.h"
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@ namespace vol
 namespace
 {
 
-constexpr std::size_t AddressBytes = 8;
-constexpr std::size_t ChecksumBytes = 4;
+constexpr std::size_t AddressBytes = HdfBytes::Address;
+constexpr std::size_t ChecksumBytes = HdfBytes::Checksum;
 /// Before what a block of either array has of its own: signature, version, what it is for, and its header's address.
 constexpr std::size_t PrefixBytes = 4 + 1 + 1 + AddressBytes;
 
@@ -34,7 +34,7 @@ int GetLog2(std::uint64_t number)
 class ExtensibleArray
 {
 public:
-  ExtensibleArray(HdfIndexReader& reader, const HdfBytes& header)
+  ExtensibleArray(HdfChunkIndex& reader, const HdfBytes& header)
     : Reader(reader)
     , EntryBytes(header.Get(6, 1))
     , CountBits(header.Get(7, 1))
@@ -44,7 +44,7 @@ public:
     , PageBits(header.Get(11, 1))
     , Index(header.Get(60, AddressBytes))
   {
-    this->IsRight = HdfIndexReader::IsEntry(header.Get(5, 1) == 1, this->EntryBytes) &&
+    this->IsRight = HdfChunkIndex::IsEntry(header.Get(5, 1) == 1, this->EntryBytes) &&
       header.Get(5, 1) <= 1 && this->CountBits <= 64 && this->PageBits < 32 &&
       IsPowerOfTwo(this->LeastEntries) && IsPowerOfTwo(this->LeastPointers) &&
       this->CountBits >= static_cast<std::uint64_t>(GetLog2(this->LeastEntries));
@@ -162,38 +162,18 @@ private:
     return block && this->Reader.AddEntries(*block, before, this->EntryBytes, number, entries);
   }
 
-  template <class IsThere>
-  bool ReadPages(
-    std::uint64_t address, std::uint64_t pages, std::uint64_t number, const IsThere& isThere)
+  bool ReadPages(std::uint64_t address, std::uint64_t pages, std::uint64_t number,
+    const dsm::FunctionRef<bool(std::uint64_t page)>& isThere)
   {
     const std::uint64_t entries = std::uint64_t(1) << this->PageBits;
-    const std::uint64_t pageBytes = entries * this->EntryBytes + ChecksumBytes;
     const std::uint64_t before = PrefixBytes + this->OffsetBytes + ChecksumBytes;
-    if (address == HdfUndefined)
-    {
-      return true;
-    }
-    if (!this->Reader.ReadChecked(address, before, "EADB"))
-    {
-      return false;
-    }
-    for (std::uint64_t page = 0; page < pages; ++page)
-    {
-      if (!isThere(page))
-      {
-        continue;
-      }
-      const auto block = this->Reader.ReadPage(address + before + page * pageBytes, pageBytes);
-      if (!block ||
-        !this->Reader.AddEntries(*block, 0, this->EntryBytes, number + page * entries, entries))
-      {
-        return false;
-      }
-    }
-    return true;
+    return address == HdfUndefined ||
+      (this->Reader.ReadChecked(address, before, "EADB") &&
+        this->Reader.AddPages(
+          address + before, entries, this->EntryBytes, number, pages * entries, isThere));
   }
 
-  HdfIndexReader& Reader;
+  HdfChunkIndex& Reader;
   std::size_t EntryBytes;
   std::uint64_t CountBits;     ///< of the number of an entry
   std::uint64_t InIndex;       ///< entries in the index block
@@ -207,14 +187,14 @@ private:
 
 } // namespace
 
-bool HdfIndexReader::ReadExtensibleArray(std::uint64_t address)
+bool HdfChunkIndex::ReadExtensibleArray(std::uint64_t address)
 {
   const std::optional<HdfBytes> header = this->ReadChecked(address, 72, "EAHD");
   return header && ExtensibleArray(*this, *header).Read();
 }
 
 /// "HDF5 File Format Specification", VII.C.
-bool HdfIndexReader::ReadFixedArray(std::uint64_t address)
+bool HdfChunkIndex::ReadFixedArray(std::uint64_t address)
 {
   const std::optional<HdfBytes> header = this->ReadChecked(address, 28, "FAHD");
   if (!header)
@@ -245,23 +225,9 @@ bool HdfIndexReader::ReadFixedArray(std::uint64_t address)
   const std::uint64_t pages = (count - 1) / pageEntries + 1;
   const std::uint64_t before = PrefixBytes + (pages + 7) / 8 + ChecksumBytes;
   const auto bits = this->ReadChecked(block, before, "FADB");
-  const std::uint64_t pageBytes = pageEntries * entryBytes + ChecksumBytes;
-  for (std::uint64_t page = 0; bits && page < pages; ++page)
-  {
-    const std::uint64_t first = page * pageEntries;
-    const std::uint64_t entries = std::min(pageEntries, count - first);
-    if (!bits->GetBit(PrefixBytes, page))
-    {
-      continue;
-    }
-    const auto one =
-      this->ReadPage(block + before + page * pageBytes, entries * entryBytes + ChecksumBytes);
-    if (!one || !this->AddEntries(*one, 0, entryBytes, first, entries))
-    {
-      return false;
-    }
-  }
-  return bits.has_value();
+  return bits &&
+    this->AddPages(block + before, pageEntries, entryBytes, 0, count,
+      [&](std::uint64_t page) { return bits->GetBit(PrefixBytes, page); });
 }
 
 } // namespace vol

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The B-tree, version 2, in which HDF5 keeps where chunks are: "HDF5 File Format Specification", III.A.2.
-#include "DSMVolumeFiles/hdf/HdfIndexReader.h"
+#include "DSMVolumeFiles/hdf/HdfChunkIndex.h"
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@ namespace vol
 namespace
 {
 
-constexpr std::size_t AddressBytes = 8;
-constexpr std::size_t ChecksumBytes = 4;
+constexpr std::size_t AddressBytes = HdfBytes::Address;
+constexpr std::size_t ChecksumBytes = HdfBytes::Checksum;
 constexpr std::size_t PrefixBytes = 4 + 1 + 1; ///< prefix of a node: signature, version, type
 constexpr std::uint64_t MostLevels = 32;
 
@@ -29,7 +29,7 @@ std::size_t CountBytesFor(std::uint64_t most)
 class Tree
 {
 public:
-  Tree(HdfIndexReader& reader, const HdfBytes& header)
+  Tree(HdfChunkIndex& reader, const HdfBytes& header)
     : Reader(reader)
     , IsFiltered(header.Get(5, 1) == 11)
     , NodeBytes(header.Get(6, 4))
@@ -39,7 +39,7 @@ public:
     const std::size_t placeBytes = 8 * reader.GetAxes();
     this->EntryBytes = this->RecordBytes - std::min(this->RecordBytes, placeBytes);
     this->IsRight = (this->IsFiltered || header.Get(5, 1) == 10) && this->Depth <= MostLevels &&
-      HdfIndexReader::IsEntry(this->IsFiltered, this->EntryBytes) && this->FindLevels();
+      HdfChunkIndex::IsEntry(this->IsFiltered, this->EntryBytes) && this->FindLevels();
   }
 
   bool Read(std::uint64_t root, std::uint64_t records)
@@ -133,7 +133,7 @@ private:
     return this->Reader.Add(chunk.data(), this->Reader.GetChunk(node, place, this->EntryBytes));
   }
 
-  HdfIndexReader& Reader;
+  HdfChunkIndex& Reader;
   bool IsFiltered;
   std::uint64_t NodeBytes;
   std::size_t RecordBytes;
@@ -147,7 +147,7 @@ private:
 
 } // namespace
 
-bool HdfIndexReader::ReadTree2(std::uint64_t address)
+bool HdfChunkIndex::ReadTree2(std::uint64_t address)
 {
   const std::optional<HdfBytes> header = this->ReadChecked(address, 38, "BTHD");
   return header && Tree(*this, *header).Read(header->Get(16, AddressBytes), header->Get(24, 2));

@@ -103,31 +103,11 @@ std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll)
 
 hid_t GetHdfType(bricks::ScalarType type)
 {
-  using Type = bricks::ScalarType;
-  switch (type)
-  {
-    case Type::Int8:
-      return H5T_NATIVE_INT8;
-    case Type::UInt8:
-      return H5T_NATIVE_UINT8;
-    case Type::Int16:
-      return H5T_NATIVE_INT16;
-    case Type::UInt16:
-      return H5T_NATIVE_UINT16;
-    case Type::Int32:
-      return H5T_NATIVE_INT32;
-    case Type::UInt32:
-      return H5T_NATIVE_UINT32;
-    case Type::Int64:
-      return H5T_NATIVE_INT64;
-    case Type::UInt64:
-      return H5T_NATIVE_UINT64;
-    case Type::Float32:
-      return H5T_NATIVE_FLOAT;
-    case Type::Float64:
-      return H5T_NATIVE_DOUBLE;
-  }
-  return H5I_INVALID_HID;
+  // In the order of the types.
+  const hid_t types[] = { H5T_NATIVE_INT8, H5T_NATIVE_UINT8, H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
+    H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64, H5T_NATIVE_FLOAT,
+    H5T_NATIVE_DOUBLE };
+  return types[static_cast<std::size_t>(type)];
 }
 
 bool IsHdfNumber(hid_t type)
@@ -158,23 +138,12 @@ bool IsHdfNumber(hid_t type)
 
 std::vector<double> ReadHdfNumbers(hid_t object, const char* name)
 {
-  std::vector<double> numbers;
-  if (H5Aexists(object, name) <= 0)
-  {
-    return numbers;
-  }
-  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
-  if (count > 0 && static_cast<std::uint64_t>(count) <= FileLimits::Axes)
-  {
-    numbers.resize(static_cast<std::size_t>(count));
-    if (!ReadHdfAttribute(object, name, H5T_NATIVE_DOUBLE, numbers.data(), count))
-    {
-      numbers.clear();
-    }
-  }
-  return numbers;
+  const hssize_t count = HdfAttribute(object, name).Count;
+  const bool isShort = count > 0 && static_cast<std::uint64_t>(count) <= FileLimits::Axes;
+  std::vector<double> numbers(isShort ? static_cast<std::size_t>(count) : 0);
+  return isShort && ReadHdfAttribute(object, name, H5T_NATIVE_DOUBLE, numbers.data(), count)
+    ? numbers
+    : std::vector<double>();
 }
 
 std::string ReadHdfText(hid_t object, const char* name)
@@ -186,26 +155,20 @@ std::string ReadHdfText(hid_t object, const char* name)
 std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
 {
   std::vector<std::string> texts;
-  if (H5Aexists(object, name) <= 0)
+  const HdfAttribute attribute(object, name);
+  const hid_t type = attribute.Type.Get();
+  const std::size_t bytes = H5Tget_size(type);
+  if (attribute.Count < 1 || static_cast<std::uint64_t>(attribute.Count) > FileLimits::Axes ||
+    H5Tget_class(type) != H5T_STRING || bytes > FileLimits::NameBytes)
   {
     return texts;
   }
-  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-  const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
-  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-  const hssize_t count = H5Sget_simple_extent_npoints(space.Get());
-  const std::size_t bytes = H5Tget_size(type.Get());
-  if (H5Tget_class(type.Get()) != H5T_STRING || count < 1 ||
-    static_cast<std::uint64_t>(count) > FileLimits::Axes || bytes > FileLimits::NameBytes)
+  const auto all = static_cast<std::size_t>(attribute.Count);
+  if (H5Tis_variable_str(type) > 0)
   {
-    return texts;
-  }
-  const auto all = static_cast<std::size_t>(count);
-  if (H5Tis_variable_str(type.Get()) > 0)
-  {
-    CheckHdfHeap(attribute.Get(), all);
+    CheckHdfHeap(attribute.Id.Get(), all);
     std::vector<char*> read(all, nullptr);
-    const bool isRead = H5Aread(attribute.Get(), type.Get(), read.data()) >= 0;
+    const bool isRead = H5Aread(attribute.Id.Get(), type, read.data()) >= 0;
     for (char* const text : read)
     {
       texts.emplace_back(isRead && text ? text : "");
@@ -214,7 +177,7 @@ std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
     return texts;
   }
   std::vector<char> read(all * bytes + 1, '\0');
-  if (H5Aread(attribute.Get(), type.Get(), read.data()) >= 0)
+  if (H5Aread(attribute.Id.Get(), type, read.data()) >= 0)
   {
     for (std::size_t index = 0; index < all; ++index)
     {
@@ -228,23 +191,16 @@ std::vector<std::string> ReadHdfTexts(hid_t object, const char* name)
 std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t axes)
 {
   std::vector<std::string> paths;
-  const char* const name = "DIMENSION_LIST";
-  if (H5Aexists(dataset, name) <= 0)
-  {
-    return paths;
-  }
-  const HdfHandle attribute(H5Aopen(dataset, name, H5P_DEFAULT), &H5Aclose);
-  const HdfHandle type(H5Aget_type(attribute.Get()), &H5Tclose);
-  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
+  const HdfAttribute attribute(dataset, "DIMENSION_LIST");
   const HdfHandle references(H5Tvlen_create(H5T_STD_REF_OBJ), &H5Tclose);
   std::vector<hvl_t> lists(axes);
-  if (H5Sget_simple_extent_npoints(space.Get()) != static_cast<hssize_t>(axes) ||
-    H5Tequal(type.Get(), references.Get()) <= 0)
+  if (attribute.Count != static_cast<hssize_t>(axes) ||
+    H5Tequal(attribute.Type.Get(), references.Get()) <= 0)
   {
     return paths;
   }
-  CheckHdfHeap(attribute.Get(), axes);
-  if (H5Aread(attribute.Get(), references.Get(), lists.data()) < 0)
+  CheckHdfHeap(attribute.Id.Get(), axes);
+  if (H5Aread(attribute.Id.Get(), references.Get(), lists.data()) < 0)
   {
     return paths;
   }
@@ -254,11 +210,9 @@ std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t ax
         ? H5Rdereference2(file, H5P_DEFAULT, H5R_OBJECT, list.p)
         : H5I_INVALID_HID,
       &H5Oclose);
-    paths.push_back(scale.IsOpen()
-        ? GetHdfText([&](char* to, std::size_t size) { return H5Iget_name(scale.Get(), to, size); })
-        : std::string());
+    paths.push_back(GetHdfText(&H5Iget_name, scale.Get()));
   }
-  H5Dvlen_reclaim(references.Get(), space.Get(), H5P_DEFAULT, lists.data());
+  H5Dvlen_reclaim(references.Get(), attribute.Space.Get(), H5P_DEFAULT, lists.data());
   return paths;
 }
 

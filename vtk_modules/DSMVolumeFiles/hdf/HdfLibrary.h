@@ -116,35 +116,48 @@ bool ReadHdfWhole(
   return true;
 }
 
-/// Returns a text from a function of the library that first returns the text's length: `get(to, size)`. Empty
-/// if it fails, or if the text is longer than FileLimits::NameBytes. Under the lock.
-template <class Get>
-std::string GetHdfText(const Get& get)
+/// Returns a text from a function of the library that first returns the text's length: `get(arguments..., to, size)`.
+/// Empty if it fails, or if the text is longer than FileLimits::NameBytes. Under the lock.
+template <class Get, class... Arguments>
+std::string GetHdfText(const Get& get, Arguments... arguments)
 {
-  const ssize_t length = get(nullptr, 0);
+  const ssize_t length = get(arguments..., nullptr, 0);
   if (length < 0 || static_cast<std::size_t>(length) > FileLimits::NameBytes)
   {
     return {};
   }
   std::string text(static_cast<std::size_t>(length) + 1, '\0');
-  const ssize_t got = get(text.data(), text.size());
+  const ssize_t got = get(arguments..., text.data(), text.size());
   text.resize(got < 0 ? 0 : static_cast<std::size_t>(length));
   return text;
 }
+
+/// An attribute of an object, with its type, its space and the number of its elements; -1: there is no such attribute.
+/// Under the lock.
+struct HdfAttribute
+{
+  HdfHandle Id;
+  HdfHandle Type;
+  HdfHandle Space;
+  hssize_t Count;
+
+  HdfAttribute(hid_t object, const char* name)
+    : Id(H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : H5I_INVALID_HID,
+        &H5Aclose)
+    , Type(H5Aget_type(this->Id.Get()), &H5Tclose)
+    , Space(H5Aget_space(this->Id.Get()), &H5Sclose)
+    , Count(H5Sget_simple_extent_npoints(this->Space.Get()))
+  {
+  }
+};
 
 /// False where there is no such attribute, or not with so many numbers. Under the lock.
 template <class T>
 bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize_t count)
 {
-  if (H5Aexists(object, name) <= 0)
-  {
-    return false;
-  }
-  const HdfHandle attribute(H5Aopen(object, name, H5P_DEFAULT), &H5Aclose);
-  const HdfHandle space(H5Aget_space(attribute.Get()), &H5Sclose);
-  const HdfHandle stored(H5Aget_type(attribute.Get()), &H5Tclose);
-  return H5Sget_simple_extent_npoints(space.Get()) == count && IsHdfNumber(stored.Get()) &&
-    H5Aread(attribute.Get(), type, out) >= 0;
+  const HdfAttribute attribute(object, name);
+  return attribute.Count == count && IsHdfNumber(attribute.Type.Get()) &&
+    H5Aread(attribute.Id.Get(), type, out) >= 0;
 }
 
 /// An attribute's numbers; none where there is no such attribute, or it has more than the axes of a dataset, or others than

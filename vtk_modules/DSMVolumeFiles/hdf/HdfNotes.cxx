@@ -19,15 +19,10 @@ namespace vol
 namespace
 {
 
-std::string GetPath(hid_t object)
-{
-  return GetHdfText([=](char* to, std::size_t size) { return H5Iget_name(object, to, size); });
-}
-
 /// Returns the path of the group that a dataset is in, with a slash behind it.
 std::string GetGroupPath(hid_t dataset)
 {
-  const std::string path = GetPath(dataset);
+  const std::string path = GetHdfText(&H5Iget_name, dataset);
   return path.substr(0, path.rfind('/') + 1);
 }
 
@@ -61,7 +56,7 @@ AxisNotes ReadOpenPmd(
   {
     return notes;
   }
-  const std::string path = GetPath(dataset);
+  const std::string path = GetHdfText(&H5Iget_name, dataset);
   const HdfHandle parent(H5Gopen2(file, GetGroupPath(dataset).c_str(), H5P_DEFAULT), &H5Gclose);
   const hid_t record = H5Aexists(dataset, "axisLabels") > 0 ? dataset : parent.Get();
   std::vector<std::string> labels = ReadHdfTexts(record, "axisLabels");

@@ -21,12 +21,6 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The file that an object is in.
-std::string GetFileName(hid_t object)
-{
-  return GetHdfText([=](char* to, std::size_t size) { return H5Fget_name(object, to, size); });
-}
-
 /// Finds a file that another names, as the library does: first in folders of the environment
 /// variable. Returns nothing if there is none.
 std::optional<std::string> FindFile(
@@ -119,8 +113,8 @@ HdfHandle OpenHdfObject(hid_t group, const std::string& name)
 
 bool HdfOrigins::Add(const std::string& path, hid_t file, hid_t dataset)
 {
-  const std::string in = GetFileName(dataset);
-  const bool isLinked = in != GetFileName(file);
+  const std::string in = GetHdfText(&H5Fget_name, dataset);
+  const bool isLinked = in != GetHdfText(&H5Fget_name, file);
   if (isLinked)
   {
     this->Keep(in);
@@ -161,10 +155,8 @@ void HdfOrigins::AddSources(const std::string& path, hid_t properties)
   CheckLimit(path, "sources of a virtual dataset", count, FileLimits::Sources);
   for (std::size_t source = 0; source < count; ++source)
   {
-    const std::string file = GetHdfText([&](char* to, std::size_t size)
-      { return H5Pget_virtual_filename(properties, source, to, size); });
-    const std::string dataset = GetHdfText([&](char* to, std::size_t size)
-      { return H5Pget_virtual_dsetname(properties, source, to, size); });
+    const std::string file = GetHdfText(&H5Pget_virtual_filename, properties, source);
+    const std::string dataset = GetHdfText(&H5Pget_virtual_dsetname, properties, source);
     const auto find = [&](const std::string& name)
     {
       return name == "." ? std::optional<std::string>(path)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 
 namespace vol
 {
@@ -123,30 +124,16 @@ std::optional<HdfValues> FindHdfValues(hid_t dataset, const std::string& member)
 std::string DescribeHdfType(hid_t dataset)
 {
   const HdfHandle type(H5Dget_type(dataset), &H5Tclose);
-  const std::string bytes = std::to_string(H5Tget_size(type.Get())) + " bytes";
-  switch (H5Tget_class(type.Get()))
-  {
-    case H5T_INTEGER:
-      return "integers, " + bytes;
-    case H5T_FLOAT:
-      return "floating point, " + bytes;
-    case H5T_STRING:
-      return "text";
-    case H5T_OPAQUE:
-      return "opaque, " + bytes;
-    case H5T_COMPOUND:
-      return "compound without numbers";
-    case H5T_REFERENCE:
-      return "references";
-    case H5T_VLEN:
-      return "lists of any length";
-    case H5T_ARRAY:
-      return "arrays";
-    case H5T_BITFIELD:
-      return "bit fields";
-    default:
-      return "of a type that this HDF5 library does not know";
-  }
+  const H5T_class_t kind = H5Tget_class(type.Get());
+  static const std::map<H5T_class_t, std::string> names{ { H5T_INTEGER, "integers" },
+    { H5T_FLOAT, "floating point" }, { H5T_STRING, "text" }, { H5T_OPAQUE, "opaque" },
+    { H5T_COMPOUND, "compound without numbers" }, { H5T_REFERENCE, "references" },
+    { H5T_VLEN, "lists of any length" }, { H5T_ARRAY, "arrays" }, { H5T_BITFIELD, "bit fields" } };
+  const auto known = names.find(kind);
+  const bool hasBytes = kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_OPAQUE;
+  return known == names.end() ? "of a type that this HDF5 library does not know"
+    : hasBytes ? known->second + ", " + std::to_string(H5Tget_size(type.Get())) + " bytes"
+               : known->second;
 }
 
 std::vector<std::byte> GetHdfFill(hid_t dataset, bricks::ScalarType type, int components)

@@ -32,12 +32,8 @@ struct OtherDatasets
 
   void Add(const std::string& name, const std::vector<hsize_t>& shape, const AxisNotes& notes)
   {
-    hsize_t count = 1;
-    for (const hsize_t length : shape)
-    {
-      count =
-        MultiplyWithin(FileLimits::ArrayBytes, { count, length }).value_or(FileLimits::ArrayBytes);
-    }
+    const hsize_t count =
+      MultiplyWithin(FileLimits::ArrayBytes, shape).value_or(FileLimits::ArrayBytes);
     std::string names;
     for (const AxisNote& note : notes)
     {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -49,25 +50,16 @@ struct DataPlace
   static std::optional<DataPlace> Find(const std::string& dataset)
   {
     DataPlace place;
-    const char* at = dataset.data() + std::min(dataset.size(), dataset.find_first_not_of('/'));
-    const char* const end = dataset.data() + dataset.size();
-    const auto skip = [&](const std::string& word)
-    {
-      const bool isThere = static_cast<std::size_t>(end - at) >= word.size() &&
-        std::equal(word.begin(), word.end(), at);
-      at += isThere ? word.size() : 0;
-      return isThere;
-    };
-    const auto take = [&](const std::string& before, int& number)
-    {
-      const bool isThere = skip(before);
-      const auto parsed = std::from_chars(at, end, number);
-      at = parsed.ptr;
-      return isThere && parsed.ec == std::errc() && number >= 0;
-    };
-    const bool isRight = take("DataSet/ResolutionLevel ", place.Level) &&
-      take("/TimePoint ", place.Time) && take("/Channel ", place.Channel) && skip("/Data");
-    return isRight && at == end ? std::optional<DataPlace>(place) : std::nullopt;
+    int end = 0;
+    const std::string path =
+      dataset.substr(std::min(dataset.size(), dataset.find_first_not_of('/')));
+    // Of more digits, the number would be undefined.
+    std::sscanf(path.c_str(), "DataSet/ResolutionLevel %9d/TimePoint %9d/Channel %9d/Data%n",
+      &place.Level, &place.Time, &place.Channel, &end);
+    return end != 0 && static_cast<std::size_t>(end) == path.size() &&
+        std::min({ place.Level, place.Time, place.Channel }) >= 0
+      ? std::optional<DataPlace>(place)
+      : std::nullopt;
   }
 };
 

@@ -28,16 +28,6 @@ namespace vol
 namespace
 {
 
-enum class Format
-{
-  Unknown,
-  Raw,
-  Nrrd,
-  MetaImage,
-  Hdf,
-  Zarr
-};
-
 /// At the beginning, or behind a block of the user's own, of 512 bytes or twice as many, and so on.
 bool HasHdfSignature(const PositionedFile& file)
 {
@@ -72,42 +62,6 @@ std::string FindZarrFolder(const std::string& path)
   return MayBeZarr(folder) ? folder : std::string();
 }
 
-Format FindFormat(const std::string& path)
-{
-  if (!FindZarrFolder(path).empty())
-  {
-    return Format::Zarr;
-  }
-  if (FindPathKind(path) != PathKind::File)
-  {
-    return Format::Unknown;
-  }
-  if (ReadBeginning(path, 7) == "NRRD000")
-  {
-    return Format::Nrrd;
-  }
-  if (HasHdfSignature(PositionedFile(path)))
-  {
-    return Format::Hdf;
-  }
-  const std::string extension = ToLower(std::filesystem::path(path).extension().string());
-  return extension == ".mhd" || extension == ".mha" ? Format::MetaImage
-    : extension == ".raw"                           ? Format::Raw
-                                                    : Format::Unknown;
-}
-
-Format TryFindFormat(const std::string& path)
-{
-  try
-  {
-    return FindFormat(path);
-  }
-  catch (const std::exception&)
-  {
-    return Format::Unknown;
-  }
-}
-
 std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions& all)
 {
   const OpenOptions::Raw& options = all.Bare;
@@ -130,6 +84,56 @@ std::shared_ptr<VolumeFile> OpenRaw(const std::string& path, const OpenOptions& 
   return OpenBareFile(path, values, {}, all);
 }
 
+#ifndef DSM_HAS_HDF5
+std::shared_ptr<VolumeFile> OpenHdf(const std::string& path, const OpenOptions&)
+{
+  throw FileError(path,
+    "is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
+    "build again.");
+}
+#endif
+
+/// Opens a file of one format.
+using Format = std::shared_ptr<VolumeFile> (*)(const std::string& path, const OpenOptions& options);
+
+/// Returns the format of a file; null where it is unknown.
+Format FindFormat(const std::string& path)
+{
+  if (!FindZarrFolder(path).empty())
+  {
+    return [](const std::string& part, const OpenOptions& options)
+    { return OpenZarr(FindZarrFolder(part), options); };
+  }
+  if (FindPathKind(path) != PathKind::File)
+  {
+    return nullptr;
+  }
+  if (ReadBeginning(path, 7) == "NRRD000")
+  {
+    return &OpenNrrd;
+  }
+  if (HasHdfSignature(PositionedFile(path)))
+  {
+    return &OpenHdf;
+  }
+  const std::string extension = ToLower(std::filesystem::path(path).extension().string());
+  return extension == ".mhd" || extension == ".mha" ? &OpenMetaImage
+    : extension == ".raw"                           ? &OpenRaw
+                                                    : nullptr;
+}
+
+Format TryFindFormat(const std::string& path)
+{
+  try
+  {
+    return FindFormat(path);
+  }
+  catch (const std::exception&)
+  {
+    return nullptr;
+  }
+}
+
 /// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
 std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
 {
@@ -143,26 +147,9 @@ std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOption
     // An unreadable file would be reported as an unknown format.
     const PositionedFile readable(path);
   }
-  switch (FindFormat(path))
+  if (const Format open = FindFormat(path))
   {
-    case Format::Raw:
-      return OpenRaw(path, options);
-    case Format::Nrrd:
-      return OpenNrrd(path, options);
-    case Format::MetaImage:
-      return OpenMetaImage(path, options);
-    case Format::Zarr:
-      return OpenZarr(FindZarrFolder(path), options);
-    case Format::Hdf:
-#ifdef DSM_HAS_HDF5
-      return OpenHdf(path, options);
-#else
-      throw FileError(path,
-        "is an HDF5 file, which this build cannot read. Install the package libhdf5-dev and "
-        "build again.");
-#endif
-    case Format::Unknown:
-      break;
+    return open(path, options);
   }
   if (kind == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04")
   {
@@ -255,12 +242,12 @@ std::uint64_t FindStamp(const std::string& path, const OpenOptions& options)
 
 bool IsBareFile(const std::string& path)
 {
-  return TryFindFormat(path) == Format::Raw;
+  return TryFindFormat(path) == &OpenRaw;
 }
 
 bool MayBeVolumeFile(const std::string& path)
 {
-  return TryFindFormat(path) != Format::Unknown;
+  return TryFindFormat(path) != nullptr;
 }
 
 } // namespace vol

@@ -63,24 +63,27 @@ void UnpackPart(const CompressedValues& packed, const CompressedValues::Part& pa
     at += count;
     for (std::size_t used = 0;;)
     {
-      const StreamDecoder::Step step =
-        decoder->Decode(in.data() + used, count - used, out.data(), out.size());
-      used += step.Taken;
-      isBetween = step.Ended;
-      if (!take(out.data(), step.Written, step.Ended))
+      const auto step = decoder->Decode(in.data() + used, count - used, out.data(), out.size());
+      if (!step)
+      {
+        throw dsm::Error("its compressed values are damaged");
+      }
+      used += step->Taken;
+      isBetween = step->Ended;
+      if (!take(out.data(), step->Written, step->Ended))
       {
         return;
       }
       // The decoder may have more to give when all is taken.
-      if (used == count && (step.Written < out.size() || step.Ended))
+      if (used == count && (step->Written < out.size() || step->Ended))
       {
         break;
       }
-      if (step.Taken == 0 && step.Written == 0 && !step.Ended)
+      if (step->Taken == 0 && step->Written == 0 && !step->Ended)
       {
         throw dsm::Error("its compressed values are damaged");
       }
-      CheckGoesOn(file.GetPath(), step.Written > 0 ? goesOn : nullptr);
+      CheckGoesOn(file.GetPath(), step->Written > 0 ? goesOn : nullptr);
     }
   }
   if (!isBetween)

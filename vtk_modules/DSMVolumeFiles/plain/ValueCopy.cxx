@@ -124,13 +124,13 @@ ValueCopy::ValueCopy(std::filesystem::path copy)
 std::unique_ptr<ValueCopy> ValueCopy::TryBegin(const std::filesystem::path& copy)
 {
   auto written = std::unique_ptr<ValueCopy>(new ValueCopy(copy));
-  written->File =
-    open(written->Path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600);
-  if (written->File < 0)
+  written->File = Descriptor(
+    open(written->Path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
+  if (!written->File.IsOpen())
   {
     written->Refuse();
   }
-  if (flock(written->File, LOCK_EX | LOCK_NB) != 0)
+  if (flock(written->File.Get(), LOCK_EX | LOCK_NB) != 0)
   {
     if (errno != EWOULDBLOCK)
     {
@@ -141,14 +141,14 @@ std::unique_ptr<ValueCopy> ValueCopy::TryBegin(const std::filesystem::path& copy
   struct stat opened = {};
   struct stat there = {};
   // Its writer may have finished meanwhile.
-  const bool isThere = fstat(written->File, &opened) == 0 &&
+  const bool isThere = fstat(written->File.Get(), &opened) == 0 &&
     stat(written->Path.c_str(), &there) == 0 && opened.st_ino == there.st_ino;
   if (!isThere)
   {
     return nullptr;
   }
   written->IsLocked = true;
-  if (!S_ISREG(opened.st_mode) || ftruncate(written->File, 0) != 0)
+  if (!S_ISREG(opened.st_mode) || ftruncate(written->File.Get(), 0) != 0)
   {
     written->Refuse();
   }
@@ -161,10 +161,6 @@ ValueCopy::~ValueCopy()
   {
     unlink(this->Path.c_str());
   }
-  if (this->File >= 0)
-  {
-    close(this->File);
-  }
 }
 
 void ValueCopy::Add(const void* bytes, std::size_t count)
@@ -172,7 +168,7 @@ void ValueCopy::Add(const void* bytes, std::size_t count)
   const auto* const first = static_cast<const char*>(bytes);
   for (std::size_t done = 0; done < count;)
   {
-    const ssize_t wrote = write(this->File, first + done, count - done);
+    const ssize_t wrote = write(this->File.Get(), first + done, count - done);
     if (wrote < 0 && errno != EINTR)
     {
       this->Refuse();
@@ -185,7 +181,7 @@ void ValueCopy::Finish(std::uint64_t bytes)
 {
   const Trailer trailer = MakeTrailer(this->Copy, bytes);
   this->Add(trailer.data(), sizeof(trailer));
-  if (fsync(this->File) != 0)
+  if (fsync(this->File.Get()) != 0)
   {
     this->Refuse();
   }

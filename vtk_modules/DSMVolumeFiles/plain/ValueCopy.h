@@ -2,6 +2,7 @@
 #ifndef vol_ValueCopy_h
 #define vol_ValueCopy_h
 
+#include "DSMVolumeFiles/base/Descriptor.h"
 #include "DSMVolumeFiles/plain/ValueBytes.h"
 
 #include <cstddef>
@@ -46,7 +47,7 @@ private:
 
   std::filesystem::path Copy;
   std::string Path;
-  int File = -1;
+  Descriptor File;
   bool IsLocked = false;
 };
 

@@ -55,15 +55,15 @@ public:
     {
       for (std::size_t column = 0; column < axes; ++column)
       {
-        this->Offset[row] += 0.5 * (this->Linear[row][column] - finest.Linear[row][column]);
+        this->Rows[row][axes] += 0.5 * (this->Rows[row][column] - finest.Rows[row][column]);
       }
     }
   }
 
   bool HasTranslation() const { return this->IsMoved; }
-  std::size_t CountAxes() const { return this->Offset.size(); }
-  const Matrix& GetLinear() const { return this->Linear; }
-  const std::vector<double>& GetOffset() const { return this->Offset; }
+  std::size_t CountAxes() const { return this->Rows.size(); }
+  /// Of each axis of the coordinate system, with the offset as the last column.
+  const Matrix& GetRows() const { return this->Rows; }
 
 private:
   [[noreturn]] void Refuse(const std::string& type, const std::string& why) const
@@ -92,7 +92,7 @@ private:
     }
     else if (type == "rotation" || type == "affine")
     {
-      this->ApplyMatrix(type, ZarrJson::Find(one, type.c_str()));
+      this->ApplyRows(type, ZarrJson::Find(one, type.c_str()));
     }
     else if (type != "identity")
     {
@@ -119,98 +119,85 @@ private:
     return numbers;
   }
 
-  void Begin(const std::string& type, std::size_t axes)
-  {
-    if (axes > FileLimits::Axes || (!this->Offset.empty() && this->Offset.size() != axes))
-    {
-      this->Refuse(type, "has not as many numbers as there are axes");
-    }
-    if (this->Offset.empty())
-    {
-      this->Offset.resize(axes, 0.0);
-      this->Linear.assign(axes, std::vector<double>(axes, 0.0));
-      for (std::size_t axis = 0; axis < axes; ++axis)
-      {
-        this->Linear[axis][axis] = 1.0;
-      }
-    }
-  }
-
   void ApplyToAxes(const std::string& type, const std::vector<double>& numbers)
   {
     const std::size_t axes = numbers.size();
-    this->Begin(type, axes);
-    Matrix linear;
-    std::vector<double> offset;
+    Matrix rows = MakeIdentity(axes);
     for (std::size_t axis = 0; axis < axes; ++axis)
     {
-      const double number = numbers[axis];
-      if (type == "translation")
+      if (type != "mapAxis")
       {
-        this->Offset[axis] += number;
-        this->IsMoved = true;
+        rows[axis][type == "scale" ? axis : axes] = numbers[axis];
+        continue;
       }
-      else if (type == "scale")
+      const auto from = ToInteger(numbers[axis], 0, static_cast<std::int64_t>(axes) - 1);
+      if (!from || std::count(numbers.begin(), numbers.end(), numbers[axis]) != 1)
       {
-        this->Offset[axis] *= number;
-        for (double& element : this->Linear[axis])
-        {
-          element *= number;
-        }
+        this->Refuse(type, "does not name each axis once");
       }
-      else
-      {
-        const auto from = ToInteger(number, 0, static_cast<std::int64_t>(axes) - 1);
-        const bool isNew = from && std::count(numbers.begin(), numbers.end(), number) == 1;
-        if (!isNew)
-        {
-          this->Refuse(type, "does not name each axis once");
-        }
-        linear.push_back(this->Linear[static_cast<std::size_t>(*from)]);
-        offset.push_back(this->Offset[static_cast<std::size_t>(*from)]);
-      }
+      rows[axis][axis] = 0.0;
+      rows[axis][static_cast<std::size_t>(*from)] = 1.0;
     }
-    if (type == "mapAxis")
-    {
-      this->Linear = std::move(linear);
-      this->Offset = std::move(offset);
-    }
+    this->Combine(type, rows);
+    this->IsMoved = this->IsMoved || type == "translation";
   }
 
   /// The matrix of a rotation is square; that of an affine transformation has a column of offsets behind it.
-  void ApplyMatrix(const std::string& type, const Json& rows)
+  void ApplyRows(const std::string& type, const Json& json)
   {
-    const std::size_t axes = rows.is_array() ? rows.size() : 0;
-    this->Begin(type, axes);
-    Matrix linear(axes, std::vector<double>(axes, 0.0));
-    std::vector<double> offset(axes, 0.0);
-    for (std::size_t row = 0; row < axes; ++row)
+    const std::size_t axes = json.is_array() ? json.size() : 0;
+    const std::size_t columns = axes + (type == "affine" ? 1 : 0);
+    Matrix rows;
+    for (std::size_t row = 0; row < std::min<std::size_t>(axes, FileLimits::Axes + 1); ++row)
     {
-      const std::vector<double> numbers = ZarrJson::ToNumbers(rows[row]);
-      const std::size_t columns = axes + (type == "affine" ? 1 : 0);
-      if (numbers.size() != columns)
+      rows.push_back(ZarrJson::ToNumbers(json[row]));
+      if (rows.back().size() != columns)
       {
         this->Refuse(type, "is not a matrix of " + std::to_string(columns) + " columns");
       }
-      offset[row] = type == "affine" ? numbers.back() : 0.0;
+      rows.back().resize(axes + 1, 0.0);
+    }
+    this->Combine(type, rows);
+    this->IsMoved = this->IsMoved || type == "affine";
+  }
+
+  /// No change: each row has the column of an offset behind those of the axes.
+  static Matrix MakeIdentity(std::size_t axes)
+  {
+    Matrix rows(axes, std::vector<double>(axes + 1, 0.0));
+    for (std::size_t axis = 0; axis < axes; ++axis)
+    {
+      rows[axis][axis] = 1.0;
+    }
+    return rows;
+  }
+
+  /// Applies rows of such a matrix after what there is.
+  void Combine(const std::string& type, const Matrix& rows)
+  {
+    const std::size_t axes = rows.size();
+    if (axes > FileLimits::Axes || (!this->Rows.empty() && this->Rows.size() != axes))
+    {
+      this->Refuse(type, "has not as many numbers as there are axes");
+    }
+    const Matrix before = this->Rows.empty() ? MakeIdentity(axes) : std::move(this->Rows);
+    this->Rows.assign(axes, std::vector<double>(axes + 1, 0.0));
+    for (std::size_t row = 0; row < axes; ++row)
+    {
+      this->Rows[row][axes] = rows[row][axes];
       for (std::size_t inner = 0; inner < axes; ++inner)
       {
-        offset[row] += numbers[inner] * this->Offset[inner];
-        for (std::size_t column = 0; column < axes; ++column)
+        for (std::size_t column = 0; column <= axes; ++column)
         {
-          linear[row][column] += numbers[inner] * this->Linear[inner][column];
+          this->Rows[row][column] += rows[row][inner] * before[inner][column];
         }
       }
     }
-    this->IsMoved = this->IsMoved || type == "affine";
-    this->Linear = std::move(linear);
-    this->Offset = std::move(offset);
   }
 
   std::string Folder;
   const ReadNumbers& ReadFrom;
-  Matrix Linear;
-  std::vector<double> Offset;
+  Matrix Rows; ///< empty: nothing was applied
   bool IsMoved = false;
 };
 
@@ -295,7 +282,7 @@ void Turn(const std::string& folder, const Placement& placement, OmeLevel& level
 {
   std::array<std::size_t, 3> places{}; // of x, y and z
   std::array<bool, 3> isFound{};
-  const Matrix& linear = placement.GetLinear();
+  const Matrix& linear = placement.GetRows();
   for (std::size_t axis = 0; axis < level.Axes.size(); ++axis)
   {
     AxisNote& note = level.Axes[axis];
@@ -315,7 +302,7 @@ void Turn(const std::string& folder, const Placement& placement, OmeLevel& level
           "be shown.");
       }
     }
-    note.Origin = placement.GetOffset()[axis];
+    note.Origin = linear[axis].back();
     note.Spacing = space ? 1.0 : linear[axis][axis];
   }
   if (std::count(isFound.begin(), isFound.end(), true) != 3)
@@ -392,7 +379,7 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
   {
     found.Axes.resize(axes);
   }
-  const auto along = FindAlong(placement.GetLinear());
+  const auto along = FindAlong(placement.GetRows());
   if (axes > found.Axes.size() || (axes < found.Axes.size() && !along))
   {
     throw FileError(folder,
@@ -408,8 +395,8 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
     {
       AxisNote& note = found.Axes[first + axis];
       note = system[first + (*along)[axis]];
-      note.Spacing = placement.GetLinear()[(*along)[axis]][axis];
-      note.Origin = placement.GetOffset()[(*along)[axis]];
+      note.Spacing = placement.GetRows()[(*along)[axis]][axis];
+      note.Origin = placement.GetRows()[(*along)[axis]].back();
     }
   }
   else

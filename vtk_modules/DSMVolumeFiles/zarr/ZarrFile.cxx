@@ -7,13 +7,11 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/zarr/OmeScales.h"
-#include "DSMVolumeFiles/zarr/ZarrAxes.h"
 #include "DSMVolumeFiles/zarr/ZarrGroup.h"
 #include "DSMVolumeFiles/zarr/ZarrJson.h"
-#include "DSMVolumeFiles/zarr/ZarrListing.h"
-#include "DSMVolumeFiles/zarr/ZarrMetadata.h"
 #include "DSMVolumeFiles/zarr/ZarrNotes.h"
 #include "DSMVolumeFiles/zarr/ZarrParts.h"
+#include "DSMVolumeFiles/zarr/ZarrSource.h"
 #include "DSMVolumeFiles/zarr/ZarrVector.h"
 
 #include <algorithm>
@@ -63,16 +61,10 @@ public:
     constexpr std::uint64_t most = std::uint64_t(1) << 62;
     std::uint64_t files = 0;
     std::uint64_t indexBytes = 0;
-    for (const Source& source : this->Sources)
+    for (const ZarrSource& source : this->Sources)
     {
       const ZarrMetadata& data = *source.Data;
-      const auto& across = data.Shards ? data.Shards->ShardShape : data.ChunkShape;
-      std::uint64_t mine = 1;
-      for (std::size_t axis = 0; axis < across.size(); ++axis)
-      {
-        const std::int64_t along = (data.Shape[axis] + across[axis] - 1) / across[axis];
-        mine = MultiplyWithin(most, { mine, static_cast<std::uint64_t>(along) }).value_or(most);
-      }
+      const std::uint64_t mine = MultiplyWithin(most, data.CountFiles()).value_or(most);
       files = std::min(most, files + mine);
       indexBytes = std::max<std::uint64_t>(indexBytes, data.Shards ? data.Shards->IndexBytes : 0);
     }
@@ -88,10 +80,10 @@ protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const bricks::Index3& chunk) const override
   {
-    const Source& source = this->Sources[array];
+    const ZarrSource& source = this->Sources[array];
     const ZarrMetadata& data = *source.Data;
     std::size_t slice = 0;
-    const Index index = FindIndex(source, step, chunk, &slice);
+    const ZarrSource::Index index = source.FindIndex(step, chunk, &slice);
     std::optional<Place> place =
       data.Shards ? this->FindInShard(source, index) : this->FindFile(source, index);
     if (place)
@@ -103,59 +95,11 @@ protected:
 
   bool IsMissing(std::size_t array, int step, const bricks::Index3& chunk) const override
   {
-    const Source& source = this->Sources[array];
-    return source.Listing->IsMissing(GetFileIndex(source, FindIndex(source, step, chunk)));
+    const ZarrSource& source = this->Sources[array];
+    return source.Listing->IsMissing(source.GetFileIndex(source.FindIndex(step, chunk)));
   }
 
 private:
-  using Index = ZarrListing::Index; ///< of a chunk, or of a file
-
-  /// Origin of one of this file's arrays.
-  struct Source
-  {
-    std::string Folder;
-    std::shared_ptr<const ZarrMetadata> Data;
-    ZarrAxes Axes;
-    std::vector<std::int64_t> Channel; ///< along the leading axes; of time, 0
-    ZarrListing* Listing;              ///< one of Listings
-  };
-
-  /// `slice`: which one of the times and channels in the chunk.
-  static Index FindIndex(
-    const Source& source, int step, const bricks::Index3& chunk, std::size_t* slice = nullptr)
-  {
-    const ZarrMetadata& data = *source.Data;
-    const std::size_t axes = data.Shape.size();
-    Index index{};
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      index[source.Axes.FindInSpace(axes, axis)] = chunk[axis];
-    }
-    for (std::size_t axis = 0; axis < source.Channel.size(); ++axis)
-    {
-      const std::int64_t at =
-        static_cast<int>(axis) == source.Axes.Time ? step : source.Channel[axis];
-      index[axis] = at / data.ChunkShape[axis];
-      if (slice)
-      {
-        *slice = *slice * static_cast<std::size_t>(data.ChunkShape[axis]) +
-          static_cast<std::size_t>(at % data.ChunkShape[axis]);
-      }
-    }
-    return index;
-  }
-
-  /// Which file, or shard, has a chunk.
-  static Index GetFileIndex(const Source& source, Index index)
-  {
-    const ZarrMetadata& data = *source.Data;
-    for (std::size_t axis = 0; data.Shards && axis < data.Shape.size(); ++axis)
-    {
-      index[axis] /= data.Shards->ShardShape[axis] / data.ChunkShape[axis];
-    }
-    return index;
-  }
-
   /// Computes the stamp from the arrays' own files and from the results of the attributes, which
   /// may be in other files: axes, time, channels, their names, and the positions of the samples.
   std::uint64_t MakeStamp() const
@@ -168,7 +112,7 @@ private:
     }
     for (std::size_t array = 0; array < this->Sources.size(); ++array)
     {
-      const Source& source = this->Sources[array];
+      const ZarrSource& source = this->Sources[array];
       const std::string& name = this->Arrays[array].Name;
       hash.Add(source.Axes.Order.data(), sizeof(SpaceOrder));
       const std::int64_t numbers[] = { source.Axes.Time, this->Arrays[array].Components,
@@ -553,19 +497,10 @@ private:
     return unique;
   }
 
-  static std::string GetKey(const ZarrMetadata& data, const Index& index)
+  std::optional<StoredFile::Place> FindFile(
+    const ZarrSource& source, const ZarrSource::Index& index) const
   {
-    std::string key = data.Prefix;
-    for (std::size_t axis = 0; axis < data.Shape.size(); ++axis)
-    {
-      key += (key.empty() ? "" : data.Separator) + std::to_string(index[axis]);
-    }
-    return key;
-  }
-
-  std::optional<StoredFile::Place> FindFile(const Source& source, const Index& index) const
-  {
-    const std::string path = source.Folder + "/" + GetKey(*source.Data, index);
+    const std::string path = source.Folder + "/" + source.Data->GetKey(index.data());
     if (source.Listing->IsStillMissing(index) || FindPathKind(path) == PathKind::Nothing)
     {
       this->Parts.CheckNeverThere(path);
@@ -581,7 +516,8 @@ private:
     return StoredFile::Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
   }
 
-  std::optional<StoredFile::Place> FindInShard(const Source& source, const Index& index) const
+  std::optional<StoredFile::Place> FindInShard(
+    const ZarrSource& source, const ZarrSource::Index& index) const
   {
     const ZarrMetadata& data = *source.Data;
     const ZarrMetadata::Sharding& shards = *data.Shards;
@@ -592,7 +528,7 @@ private:
       number =
         number * static_cast<std::size_t>(across) + static_cast<std::size_t>(index[axis] % across);
     }
-    std::optional<StoredFile::Place> place = this->FindFile(source, GetFileIndex(source, index));
+    std::optional<StoredFile::Place> place = this->FindFile(source, source.GetFileIndex(index));
     if (!place)
     {
       return std::nullopt;
@@ -616,7 +552,7 @@ private:
   std::string Folder;                                           ///< with what is shown
   std::string Name;                                             ///< of an array without one
   bool IsPlaced;                                                ///< by what it says
-  std::vector<Source> Sources;                                  ///< one for each array
+  std::vector<ZarrSource> Sources;                              ///< one for each array
   std::map<std::string, std::unique_ptr<ZarrListing>> Listings; ///< by folder
   std::unordered_set<std::string> Names;
   mutable ZarrParts Parts;

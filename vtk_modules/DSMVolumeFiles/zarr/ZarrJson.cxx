@@ -84,13 +84,6 @@ nlohmann::json ZarrJson::Read(const std::string& folder, const std::string& name
   }
 }
 
-const nlohmann::json& ZarrJson::Find(const nlohmann::json& object, const char* name)
-{
-  static const Json none;
-  const auto found = object.is_object() ? object.find(name) : object.end();
-  return found == object.end() ? none : *found;
-}
-
 std::string ZarrJson::GetText(
   const std::string& folder, const nlohmann::json& object, const char* name)
 {

@@ -4,6 +4,8 @@
 
 #include "DSMVolumeFiles/base/FileLimits.h"
 
+#include "DSMVolumeFiles/codec/CodecJson.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -21,8 +23,7 @@ namespace ZarrJson
 /// Throws dsm::Error, which names the file, when it is larger or deeper than FileLimits has it, or not JSON.
 nlohmann::json Read(const std::string& folder, const std::string& name);
 
-/// Returns a member of an object; null where there is none, or what should have it is no object.
-const nlohmann::json& Find(const nlohmann::json& object, const char* name);
+using CodecJson::Find;
 
 /// Returns a text; empty where there is none. Throws dsm::Error, which names the folder, when it is longer than a name.
 std::string GetText(const std::string& folder, const nlohmann::json& object, const char* name);

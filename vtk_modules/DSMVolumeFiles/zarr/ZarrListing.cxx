@@ -37,19 +37,10 @@ ZarrListing::ZarrListing(const std::string& folder, const ZarrMetadata& data)
   {
     this->Prefix = data.Prefix + data.Separator;
   }
-  const auto& across = data.Shards ? data.Shards->ShardShape : data.ChunkShape;
-  std::uint64_t all = 1;
-  for (std::size_t axis = 0; axis < across.size(); ++axis)
+  this->Counts = data.CountFiles();
+  if (!MultiplyWithin(FileLimits::ArrayBytes, this->Counts))
   {
-    const auto along = static_cast<std::uint64_t>((data.Shape[axis] - 1) / across[axis] + 1);
-    const auto product = MultiplyWithin(FileLimits::ArrayBytes, { all, along });
-    if (!product)
-    {
-      this->Counts.clear();
-      return;
-    }
-    all = *product;
-    this->Counts.push_back(along);
+    this->Counts.clear();
   }
 }
 

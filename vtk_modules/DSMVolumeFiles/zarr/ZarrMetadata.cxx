@@ -4,6 +4,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/codec/CodecJson.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/zarr/ZarrJson.h"
 
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <system_error>
 #include <type_traits>
@@ -28,52 +28,22 @@ using Json = nlohmann::json;
 
 using ZarrJson::Refuse;
 
-/// Refuses a type of values that this library does not have.
-[[noreturn]] void RefuseType(const std::string& folder, const std::string& text)
+/// Version 2: "<f4", 3: "float32". `isSwapped`: set to whether the bytes are the other way round than the machine's.
+PackedValues ParseType(const std::string& folder, const std::string& text, bool& isSwapped)
 {
-  Refuse(folder, "scalar type " + Quote(text) + " is not supported.");
-}
-
-/// Version 2: "<f4". `isSwapped`: set to whether the bytes are the other way round than the machine's.
-PackedValues ParseType2(const std::string& folder, const std::string& text, bool& isSwapped)
-{
-  isSwapped = !text.empty() && text[0] == '>';
-  if (text == "<f2" || text == ">f2")
+  if (text == "<f2" || text == ">f2" || text == "float16")
   {
+    isSwapped = text[0] == '>';
     return PackedValues::OfHalves();
   }
-  using Type = bricks::ScalarType;
-  static const std::map<std::string, Type> types = { { "i1", Type::Int8 }, { "u1", Type::UInt8 },
-    { "b1", Type::UInt8 }, { "i2", Type::Int16 }, { "u2", Type::UInt16 }, { "i4", Type::Int32 },
-    { "u4", Type::UInt32 }, { "i8", Type::Int64 }, { "u8", Type::UInt64 }, { "f4", Type::Float32 },
-    { "f8", Type::Float64 } };
-  const auto known = types.find(text.size() == 3 ? text.substr(1) : text);
-  if (known == types.end())
+  const bool isTruth = text == "|b1" || text == "bool";
+  const auto known = CodecJson::FindType(isTruth ? "uint8" : text);
+  if (!known)
   {
-    RefuseType(folder, text);
+    Refuse(folder, "scalar type " + Quote(text) + " is not supported.");
   }
-  isSwapped = isSwapped && bricks::GetBytes(known->second) > 1;
-  return PackedValues(known->second);
-}
-
-PackedValues ParseType3(const std::string& folder, const std::string& text)
-{
-  if (text == "float16")
-  {
-    return PackedValues::OfHalves();
-  }
-  using Type = bricks::ScalarType;
-  static const std::map<std::string, Type> types = { { "int8", Type::Int8 },
-    { "uint8", Type::UInt8 }, { "bool", Type::UInt8 }, { "int16", Type::Int16 },
-    { "uint16", Type::UInt16 }, { "int32", Type::Int32 }, { "uint32", Type::UInt32 },
-    { "int64", Type::Int64 }, { "uint64", Type::UInt64 }, { "float32", Type::Float32 },
-    { "float64", Type::Float64 } };
-  const auto known = types.find(text);
-  if (known == types.end())
-  {
-    RefuseType(folder, text);
-  }
-  return PackedValues(known->second);
+  isSwapped = known->Swapped;
+  return PackedValues(known->Type);
 }
 
 /// Version 3 may have it as bits: "0x7fc00000".
@@ -116,28 +86,14 @@ std::optional<T> ToValue(const Json& number)
       ? static_cast<T>(value)
       : std::copysign(std::numeric_limits<T>::infinity(), static_cast<T>(value > 0.0 ? 1 : -1));
   }
-  else if (number.is_number_unsigned())
-  {
-    const auto value = number.get<std::uint64_t>();
-    return value <= static_cast<std::uint64_t>(std::numeric_limits<T>::max())
-      ? std::optional<T>(static_cast<T>(value))
-      : std::nullopt;
-  }
-  else
-  {
-    const auto value = number.is_number_integer()
-      ? number.get<std::int64_t>()
-      : ToInteger(number.get<double>(), std::numeric_limits<std::int64_t>::min(),
-          std::numeric_limits<std::int64_t>::max());
-    const auto fits = [](std::int64_t one)
-    {
-      return one < 0
-        ? std::is_signed_v<T> && one >= static_cast<std::int64_t>(std::numeric_limits<T>::min())
-        : static_cast<std::uint64_t>(one) <=
-          static_cast<std::uint64_t>(std::numeric_limits<T>::max());
-    };
-    return value && fits(*value) ? std::optional<T>(static_cast<T>(*value)) : std::nullopt;
-  }
+  // Wide enough for every integer of 64 bits.
+  const long double value = number.is_number_unsigned() ? number.get<std::uint64_t>()
+    : number.is_number_integer()                        ? number.get<std::int64_t>()
+                                                        : number.get<long double>();
+  const bool fits = value == std::floor(value) &&
+    value >= static_cast<long double>(std::numeric_limits<T>::lowest()) &&
+    value <= static_cast<long double>(std::numeric_limits<T>::max());
+  return fits ? std::optional<T>(static_cast<T>(value)) : std::nullopt;
 }
 
 std::vector<std::byte> ParseFill(
@@ -272,7 +228,7 @@ ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
     Refuse(folder, "its values are records with several fields, which is not supported.");
   }
   bool isSwapped = false;
-  data.Packed = ParseType2(folder, ZarrJson::GetText(folder, json, "dtype"), isSwapped);
+  data.Packed = ParseType(folder, ZarrJson::GetText(folder, json, "dtype"), isSwapped);
   if (isSwapped)
   {
     steps.push_back({ "swap", bricks::GetBytes(data.Packed.GetStored()) });
@@ -449,7 +405,8 @@ ZarrMetadata ParseVersion3(const std::string& folder, const Json& json)
   // A shard may be larger than the array.
   constexpr std::int64_t mostOfShard = std::int64_t(1) << 52;
   data.ChunkShape = GetShape(folder, GetConfiguration(grid), "chunk_shape", mostOfShard);
-  data.Packed = ParseType3(folder, GetName(folder, ZarrJson::Find(json, "data_type")));
+  bool isSwapped = false; // only the codec "bytes" says so
+  data.Packed = ParseType(folder, GetName(folder, ZarrJson::Find(json, "data_type")), isSwapped);
   data.Fill = ParseFill(folder, ZarrJson::Find(json, "fill_value"), data.Packed);
   const Json& encoding = ZarrJson::Find(json, "chunk_key_encoding");
   const bool isDefault = encoding.empty() || GetName(folder, encoding) == "default";
@@ -482,6 +439,27 @@ bool ZarrMetadata::IsVolume() const
       this->ChunkShape[axis] > 0 && this->ChunkShape[axis] <= MostSamples;
   }
   return isRight;
+}
+
+std::string ZarrMetadata::GetKey(const std::int64_t* place) const
+{
+  std::string key = this->Prefix;
+  for (std::size_t axis = 0; axis < this->Shape.size(); ++axis)
+  {
+    key += (key.empty() ? "" : this->Separator) + std::to_string(place[axis]);
+  }
+  return key;
+}
+
+std::vector<std::uint64_t> ZarrMetadata::CountFiles() const
+{
+  const auto& across = this->Shards ? this->Shards->ShardShape : this->ChunkShape;
+  std::vector<std::uint64_t> counts;
+  for (std::size_t axis = 0; axis < across.size(); ++axis)
+  {
+    counts.push_back(static_cast<std::uint64_t>((this->Shape[axis] - 1) / across[axis] + 1));
+  }
+  return counts;
 }
 
 std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)

@@ -43,6 +43,10 @@ struct ZarrMetadata
   /// Returns whether the array has samples, in chunks, at most as many along an axis as an int counts, and three to
   /// five axes.
   bool IsVolume() const;
+  /// Returns the name, in the array's folder, of the file at a place along its axes: of a chunk, or of a shard.
+  std::string GetKey(const std::int64_t* place) const;
+  /// Files of chunks, or of shards, along each axis.
+  std::vector<std::uint64_t> CountFiles() const;
 };
 
 /// Reads the metadata of the array in a folder; returns nothing if there is no array. Throws dsm::Error if this

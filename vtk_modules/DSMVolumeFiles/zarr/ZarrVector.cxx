@@ -68,9 +68,8 @@ std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most
   const auto chunk = static_cast<std::size_t>(data->ChunkShape[0]);
   for (std::int64_t first = 0; first < data->Shape[0]; first += data->ChunkShape[0])
   {
-    const std::string number = std::to_string(first / data->ChunkShape[0]);
-    const std::string key = data->Prefix.empty() ? number : data->Prefix + data->Separator + number;
-    const ByteBuffer numbers = ReadChunk(*data, folder + "/" + key, chunk);
+    const std::int64_t number = first / data->ChunkShape[0];
+    const ByteBuffer numbers = ReadChunk(*data, folder + "/" + data->GetKey(&number), chunk);
     const auto count = std::min(chunk, static_cast<std::size_t>(data->Shape[0] - first));
     for (std::size_t index = 0; index < count; ++index)
     {
