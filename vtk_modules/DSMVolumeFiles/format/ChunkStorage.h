@@ -29,6 +29,8 @@ struct ChunkStorage
   /// Chunks at the volume's ends are as large as all others; else they end with it.
   bool HasWholeChunks = true;
   SpaceOrder Order = FastestX; ///< of the samples of a chunk
+  /// All samples of a component follow one another in a chunk that is shown as several; else the components of a sample do.
+  bool ComponentsApart = false;
   /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
   /// more axes than three.
   std::size_t Slices = 1;

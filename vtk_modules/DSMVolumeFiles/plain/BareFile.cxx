@@ -7,7 +7,7 @@
 #include "DSMVolumeFiles/base/FileLimits.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
-#include "DSMVolumeFiles/format/ChunkStorage.h"
+#include "DSMVolumeFiles/format/StoredFile.h"
 #include "DSMVolumeFiles/plain/UnpackedCopy.h"
 #include "DSMVolumeFiles/plain/ValueBytes.h"
 
@@ -47,14 +47,13 @@ std::uint64_t SkipLines(const std::string& path, std::int64_t lines, std::uint64
       std::to_string(FileLimits::HeaderBytes) + " bytes.");
 }
 
-class BareFile final : public VolumeFile
+class BareFile final : public StoredFile
 {
 public:
   BareFile(const std::string& path, const BareValues& values, const FileGeometry& geometry,
     const OpenOptions& options)
-    : VolumeFile(path)
+    : StoredFile(path)
     , Files(values.Paths)
-    , ComponentsApart(values.ComponentsApart)
   {
     this->Warnings = values.Warnings;
     this->Geometry = geometry;
@@ -97,22 +96,28 @@ public:
     this->Stamp = hash.Get();
     if (values.Encoding == StreamEncoding::Plain)
     {
-      this->Bytes = std::make_unique<ValueBytes>(std::move(parts), packed.PartBytes);
+      this->Bytes = std::make_shared<ValueBytes>(path, std::move(parts), packed.PartBytes);
     }
     else if (!options.OnlyHeader)
     {
       this->NameHeader(
         [&]
         {
-          this->Bytes = std::make_unique<ValueBytes>(
-            std::vector<ValuePart>{ UnpackOnce(packed, options.GoesOn) }, need);
+          this->Bytes = std::make_shared<ValueBytes>(
+            path, std::vector<ValuePart>{ UnpackOnce(packed, options.GoesOn) }, need);
         });
     }
+    ChunkStorage storage;
+    storage.Packed = PackedValues(values.Type);
+    storage.StoredSamples = values.Samples;
+    storage.HasWholeChunks = false;
+    storage.ComponentsApart = values.ComponentsApart;
     const std::size_t width = bricks::GetBytes(values.Type);
     if (values.BigEndian && width > 1)
     {
-      this->Codec = ChunkCodec({ { "swap", width } });
+      storage.Codec = ChunkCodec({ { "swap", width } });
     }
+    this->Storages.push_back(std::move(storage));
     this->Arrays.push_back(std::move(array));
   }
 
@@ -123,60 +128,15 @@ public:
     return files;
   }
 
-  void ReadChunk(std::size_t, int, const bricks::Index3& chunk, std::byte* out) const override
+protected:
+  /// All values are one piece, of which the chunks are parts.
+  std::optional<Place> FindChunk(std::size_t, int, const bricks::Index3&) const override
   {
-    const FileArray& array = this->Arrays.front();
-    const bricks::Box box = array.Grid.GetBox(chunk);
-    try
+    if (!this->Bytes)
     {
-      if (this->Codec.IsPlain())
-      {
-        this->ReadRows(array, box, out);
-        return;
-      }
-      const auto bytes = static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes();
-      ByteBuffer stored(bytes);
-      this->ReadRows(array, box, stored.data());
-      this->Codec.Decode(std::move(stored), 0, out, bytes);
+      throw FileError(this->Path, "cannot be read: only its header was opened.");
     }
-    catch (const dsm::Error& error)
-    {
-      throw FileError({ this->Path, array.Name, chunk }, error);
-    }
-  }
-
-  bool ReadPart(std::size_t, int, const bricks::Index3& chunk, const bricks::Box& part,
-    std::byte* out) const override
-  {
-    if (!this->Codec.IsPlain())
-    {
-      return false;
-    }
-    try
-    {
-      this->ReadRows(this->Arrays.front(), part, out);
-    }
-    catch (const dsm::Error& error)
-    {
-      throw FileError({ this->Path, this->Arrays.front().Name, chunk }, error);
-    }
-    return true;
-  }
-
-  void Prefetch(std::size_t, int, const std::vector<ChunkPart>& parts) const override
-  {
-    const FileArray& array = this->Arrays.front();
-    std::vector<PositionedFile::Piece> pieces;
-    for (const auto& [chunk, part] : parts)
-    {
-      const auto more =
-        this->FindPieces(array, this->Codec.IsPlain() ? part : array.Grid.GetBox(chunk));
-      pieces.insert(pieces.end(), more.begin(), more.end());
-    }
-    if (this->Bytes)
-    {
-      this->Bytes->Prefetch(pieces);
-    }
+    return Place{ this->Bytes, 0, static_cast<std::size_t>(this->Bytes->GetBytes()) };
   }
 
 private:
@@ -225,64 +185,8 @@ private:
     return { { path, first, file.GetStamp() }, bytes > 0 && !isPlain ? bytes : has - first };
   }
 
-  void ReadRows(const FileArray& array, const bricks::Box& box, std::byte* out) const
-  {
-    if (!this->Bytes)
-    {
-      throw dsm::Error("only its header was opened");
-    }
-    if (!this->ComponentsApart)
-    {
-      this->Bytes->Read(this->FindPieces(array, box), out);
-      return;
-    }
-    const std::size_t width = bricks::GetBytes(array.Type);
-    const std::size_t sampleBytes = array.GetSampleBytes();
-    const std::size_t bytes = static_cast<std::size_t>(box.GetCount()) * sampleBytes;
-    ByteBuffer apart(bytes);
-    this->Bytes->Read(this->FindPieces(array, box), apart.data());
-    const std::byte* from = apart.data();
-    for (std::size_t component = 0; component < sampleBytes; component += width)
-    {
-      for (std::size_t at = component; at < bytes; at += sampleBytes, from += width)
-      {
-        std::copy_n(from, width, out + at);
-      }
-    }
-  }
-
-  /// In the order of the file.
-  std::vector<PositionedFile::Piece> FindPieces(
-    const FileArray& array, const bricks::Box& box) const
-  {
-    std::vector<PositionedFile::Piece> pieces;
-    const bricks::Index3 samples = array.Grid.Samples;
-    const bricks::Index3 size = box.GetSize();
-    const int parts = this->ComponentsApart ? array.Components : 1;
-    const std::size_t sampleBytes = array.GetSampleBytes() / static_cast<std::size_t>(parts);
-    const std::int64_t all = samples.x * samples.y * samples.z;
-    // Whole rows follow one another.
-    const std::int64_t rows = size.x == samples.x ? size.y : 1;
-    const std::size_t bytes = static_cast<std::size_t>(size.x * rows) * sampleBytes;
-    for (int part = 0; part < parts; ++part)
-    {
-      for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
-      {
-        for (std::int64_t y = box.Min.y; y < box.Max.y; y += rows)
-        {
-          const auto before =
-            static_cast<std::uint64_t>(part * all + (z * samples.y + y) * samples.x + box.Min.x);
-          pieces.push_back({ before * sampleBytes, bytes });
-        }
-      }
-    }
-    return pieces;
-  }
-
   std::vector<std::string> Files;
-  std::unique_ptr<const ValueBytes> Bytes; ///< null: only the header was wanted
-  bool ComponentsApart;
-  ChunkCodec Codec;
+  std::shared_ptr<const ValueBytes> Bytes; ///< null: only the header was wanted
 };
 
 } // namespace

@@ -17,8 +17,9 @@ constexpr std::size_t MostOpen = 64;
 
 } // namespace
 
-ValueBytes::ValueBytes(std::vector<ValuePart> parts, std::uint64_t partBytes)
-  : Parts(std::move(parts))
+ValueBytes::ValueBytes(std::string path, std::vector<ValuePart> parts, std::uint64_t partBytes)
+  : Path(std::move(path))
+  , Parts(std::move(parts))
   , PartBytes(partBytes)
 {
   this->Get(0);
@@ -62,10 +63,9 @@ std::shared_ptr<const PositionedFile> ValueBytes::Get(std::size_t part) const
 }
 
 template <class Visit>
-void ValueBytes::ForEachPart(
-  const std::vector<PositionedFile::Piece>& pieces, const Visit& visit) const
+void ValueBytes::ForEachPart(const std::vector<Piece>& pieces, const Visit& visit) const
 {
-  std::vector<PositionedFile::Piece> own;
+  std::vector<Piece> own;
   std::size_t part = 0;
   std::size_t bytes = 0;
   const auto flush = [&]
@@ -77,7 +77,7 @@ void ValueBytes::ForEachPart(
     own.clear();
     bytes = 0;
   };
-  for (const PositionedFile::Piece& piece : pieces)
+  for (const Piece& piece : pieces)
   {
     for (std::size_t done = 0; done < piece.Bytes;)
     {
@@ -99,23 +99,22 @@ void ValueBytes::ForEachPart(
   flush();
 }
 
-void ValueBytes::Read(const std::vector<PositionedFile::Piece>& pieces, std::byte* out) const
+void ValueBytes::Read(const std::vector<Piece>& pieces, std::byte* out) const
 {
   this->ForEachPart(pieces,
-    [&](std::size_t part, const std::vector<PositionedFile::Piece>& own, std::size_t bytes)
+    [&](std::size_t part, const std::vector<Piece>& own, std::size_t bytes)
     {
       this->Get(part)->Read(own, out);
       out += bytes;
     });
 }
 
-void ValueBytes::Prefetch(const std::vector<PositionedFile::Piece>& pieces) const
+void ValueBytes::Prefetch(std::vector<Piece> pieces) const
 {
-  std::vector<PositionedFile::Piece> sorted = pieces;
-  std::sort(sorted.begin(), sorted.end(),
+  std::sort(pieces.begin(), pieces.end(),
     [](const auto& one, const auto& other) { return one.Offset < other.Offset; });
-  this->ForEachPart(sorted,
-    [&](std::size_t part, std::vector<PositionedFile::Piece> own, std::size_t)
+  this->ForEachPart(pieces,
+    [&](std::size_t part, std::vector<Piece> own, std::size_t)
     {
       if (const auto file = this->Find(part))
       {

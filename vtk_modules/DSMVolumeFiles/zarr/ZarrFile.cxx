@@ -84,8 +84,15 @@ protected:
     const ZarrMetadata& data = *source.Data;
     std::size_t slice = 0;
     const ZarrSource::Index index = source.FindIndex(step, chunk, &slice);
-    std::optional<Place> place =
-      data.Shards ? this->FindInShard(source, index) : this->FindFile(source, index);
+    std::optional<Place> place;
+    if (data.Shards)
+    {
+      place = this->FindInShard(source, index);
+    }
+    else if (const auto file = this->FindFile(source, index))
+    {
+      place = Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
+    }
     if (place)
     {
       place->Slice = slice;
@@ -497,7 +504,8 @@ private:
     return unique;
   }
 
-  std::optional<StoredFile::Place> FindFile(
+  /// Null: there is none.
+  std::shared_ptr<const PositionedFile> FindFile(
     const ZarrSource& source, const ZarrSource::Index& index) const
   {
     const std::string path = source.Folder + "/" + source.Data->GetKey(index.data());
@@ -509,11 +517,11 @@ private:
         throw FileError(source.Folder, "was deleted after it was opened.");
       }
       source.Listing->NoteMissing(index);
-      return std::nullopt;
+      return nullptr;
     }
-    const auto file = std::make_shared<const PositionedFile>(path);
+    auto file = std::make_shared<const PositionedFile>(path);
     this->Parts.CheckUnchanged(*file);
-    return StoredFile::Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
+    return file;
   }
 
   std::optional<StoredFile::Place> FindInShard(
@@ -528,25 +536,23 @@ private:
       number =
         number * static_cast<std::size_t>(across) + static_cast<std::size_t>(index[axis] % across);
     }
-    std::optional<StoredFile::Place> place = this->FindFile(source, source.GetFileIndex(index));
-    if (!place)
+    const auto file = this->FindFile(source, source.GetFileIndex(index));
+    if (!file)
     {
       return std::nullopt;
     }
-    const ZarrParts::Index offsets = this->Parts.GetIndex(shards, *place->File);
+    const ZarrParts::Index offsets = this->Parts.GetIndex(shards, *file);
     const std::uint64_t offset = (*offsets)[2 * number];
     const std::uint64_t bytes = (*offsets)[2 * number + 1];
     if (offset == ~std::uint64_t{ 0 } && bytes == ~std::uint64_t{ 0 })
     {
       return std::nullopt;
     }
-    if (offset > place->Bytes || bytes > place->Bytes - offset)
+    if (offset > file->GetBytes() || bytes > file->GetBytes() - offset)
     {
-      throw FileError(place->File->GetPath(), "is truncated or its index is wrong.");
+      throw FileError(file->GetPath(), "is truncated or its index is wrong.");
     }
-    place->Offset = offset;
-    place->Bytes = static_cast<std::size_t>(bytes);
-    return place;
+    return StoredFile::Place{ file, offset, static_cast<std::size_t>(bytes) };
   }
 
   std::string Folder;                                           ///< with what is shown
