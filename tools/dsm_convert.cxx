@@ -4,6 +4,7 @@
 #include "DSMCore/transport/LoopbackTransport.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMCore/transport/MpiTransport.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "DSMVolumeFiles/write/ConvertVolume.h"
 
 #include <CLI/CLI.hpp>

@@ -8,6 +8,7 @@
 #include "DSMCore/fetch/ReadingSource.h"
 #include "DSMVolumeFiles/cache/FileBrickReader.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <numeric>
 #include <optional>
@@ -18,7 +19,8 @@ namespace
 std::shared_ptr<const bricks::VoxelSource> GetSamples(
   const std::shared_ptr<const vol::VolumeFile>& file, bool scattered)
 {
-  return std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared(), scattered);
+  return std::make_shared<vol::FileSamples>(
+    vol::ArrayStep{ file, 0, 0 }, vol::ChunkCache::GetShared(), scattered);
 }
 
 bricks::VoxelIndex FindIndex(const std::shared_ptr<const vol::VolumeFile>& file,
@@ -76,8 +78,9 @@ rt::LatticeIsosurface PublishBenchmarkFile(
         field->Lattice, array.Grid.ChunkSamples, bricks::Index3(0), messenger.GetSize()));
       source = std::make_shared<dsm::ReadingSource>(messenger,
         std::make_shared<vol::FileBrickReader>(field->Lattice, GetSamples(file, true),
-          [file](const std::vector<bricks::Box>& boxes)
-          { vol::ChunkCache::GetShared().Prefetch(file, 0, 0, boxes); }),
+          [file](const std::vector<bricks::Box>& boxes) {
+            vol::ChunkCache::GetShared().Prefetch({ file, 0, 0 }, boxes);
+          }),
         path);
     });
   field->Segment = store.Publish(path, *directory, source);

@@ -5,7 +5,7 @@
 
 #include "DSMBricks/build/PublishVolume.h"
 #include "DSMBricks/sample/SampleVolume.h"
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>

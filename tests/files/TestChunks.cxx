@@ -98,7 +98,7 @@ TEST(ChunkCache, WhatIsBeingReadCountsToo)
           {
             try
             {
-              const auto bytes = cache.Get(file, 0, 0, bricks::Index3(chunk, 0, 0));
+              const auto bytes = cache.Get({ file, 0, 0 }, bricks::Index3(chunk, 0, 0));
               wrong += bytes->size() == 1000 && bytes->back() == std::byte(chunk) ? 0 : 1;
             }
             catch (const dsm::Error&)
@@ -146,10 +146,10 @@ TEST(ChunkCache, SmallChunksTakeNoMoreThanTheLimit)
   vol::ChunkCache cache(100000); // far more than the samples have
   for (int x = 0; x < 1000; ++x)
   {
-    cache.Get(file, 0, 0, { x, 0, 0 });
+    cache.Get({ file, 0, 0 }, { x, 0, 0 });
   }
   EXPECT_EQ(file->Reads, 1000);
-  cache.Get(file, 0, 0, { 0, 0, 0 });
+  cache.Get({ file, 0, 0 }, { 0, 0, 0 });
   EXPECT_EQ(file->Reads, 1001) << "what a chunk takes beside its samples counts, too";
   EXPECT_LE(cache.GetBytes(), cache.GetLimit());
 }
@@ -159,7 +159,7 @@ TEST(ChunkCache, WhatIsNotStoredIsReadOnceForABox)
   const auto file = std::make_shared<SparseFile>();
   vol::ChunkCache cache(1 << 20);
   std::vector<std::byte> box(999 * 100);
-  cache.ReadBox(file, 0, 0, { { 1, 0, 0 }, { 1000, 10, 10 } }, box.data());
+  cache.ReadBox({ file, 0, 0 }, { { 1, 0, 0 }, { 1000, 10, 10 } }, box.data());
   EXPECT_EQ(std::count(box.begin(), box.end(), std::byte(7)), 999 * 100);
   EXPECT_EQ(file->Reads, 1);
 }
@@ -196,7 +196,7 @@ TEST(ChunkCache, ChunksThatAreHeldStayWhatTheyAre)
   std::vector<const std::byte*> places;
   for (int chunk = 0; chunk < SlowFile::Bad; ++chunk)
   {
-    const auto bytes = cache.Get(file, 0, 0, bricks::Index3(chunk, 0, 0));
+    const auto bytes = cache.Get({ file, 0, 0 }, bricks::Index3(chunk, 0, 0));
     places.push_back(bytes->data());
     if (chunk % 3 == 0)
     {
@@ -232,7 +232,7 @@ TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
         }
         try
         {
-          read += cache.Get(file, 0, 0, bricks::Index3(0))->back() == std::byte(7) ? 1 : 0;
+          read += cache.Get({ file, 0, 0 }, bricks::Index3(0))->back() == std::byte(7) ? 1 : 0;
         }
         catch (const vol::WouldWait&)
         {
@@ -247,7 +247,7 @@ TEST(ChunkCache, OthersAreNotToldThatAThreadWouldWait)
   EXPECT_EQ(read + wouldWait, 8);
   EXPECT_GE(read, 4);
   const vol::WithoutWaiting scope;
-  EXPECT_EQ(cache.Get(file, 0, 0, bricks::Index3(0))->back(), std::byte(7)) << "it is here now";
+  EXPECT_EQ(cache.Get({ file, 0, 0 }, bricks::Index3(0))->back(), std::byte(7)) << "it is here now";
 }
 
 TEST(ChunkGrid, AChunkAndItsHaloAreTheBoxOfABrick)

@@ -4,7 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/open/SeriesFile.h"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ protected:
       const bricks::Box whole{ bricks::Index3(0), array.Grid.Samples };
       std::vector<std::byte> bytes(
         static_cast<std::size_t>(whole.GetCount()) * array.GetSampleBytes());
-      cache.ReadBox(file, 0, 0, whole, bytes.data());
+      cache.ReadBox({ file, 0, 0 }, whole, bytes.data());
       return {};
     }
     catch (const dsm::Error& error)
@@ -407,7 +407,7 @@ TEST_F(DamagedFile, WithABareWordForAFillValueHasIt)
     vol::ChunkCache cache(1);
     float value = 0.0f;
     const bricks::Box last{ bricks::Index3(20, 12, 9), bricks::Index3(21, 13, 10) };
-    cache.ReadBox(Open(entry), 0, 0, last, reinterpret_cast<std::byte*>(&value));
+    cache.ReadBox({ Open(entry), 0, 0 }, last, reinterpret_cast<std::byte*>(&value));
     const float expected = std::strtof(word, nullptr);
     EXPECT_TRUE(value == expected || (std::isnan(value) && std::isnan(expected))) << value;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the chunks of an HDF5 dataset are, read from each kind of index that the library writes. A chunk holds its own
 // number, so that the file itself tells which one it is.
-#include "DSMVolumeFiles/format/HdfChunkTable.h"
-#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/hdf/HdfChunkTable.h"
+#include "DSMVolumeFiles/hdf/HdfLibrary.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,8 @@
 #include "WatchedReading.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/hdf/HdfLibrary.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <gtest/gtest.h>
 

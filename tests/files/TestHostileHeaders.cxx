@@ -2,6 +2,8 @@
 // NRRD, MetaImage and bare files whose headers, names and kinds are made to mislead, or only look so.
 #include "WatchedReading.h"
 
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
+
 #include <gtest/gtest.h>
 
 #include <clocale>

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

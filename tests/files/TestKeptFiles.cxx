@@ -2,6 +2,7 @@
 // Files in the user's cache directory are used only if they are what the program kept there.
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "DSMVolumeFiles/range/KeptFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
@@ -46,7 +47,7 @@ protected:
   }
   ~TestKeptFiles() override { fs::remove_all(this->Folder); }
 
-  vol::KeptFile GetKept() const { return { *this->File, 0, 0, this->Whole, "test1" }; }
+  vol::KeptFile GetKept() const { return { { this->File, 0, 0 }, this->Whole, "test1" }; }
   /// The only entry of the folder.
   fs::path FindOnly() const
   {
@@ -56,7 +57,7 @@ protected:
   }
   vol::ValueRanges Find() const
   {
-    return *vol::FindRanges(this->File, 0, 0, this->Whole, 1, [](double) { return true; });
+    return *vol::FindRanges({ this->File, 0, 0 }, this->Whole, 1, [](double) { return true; });
   }
 
   const fs::path Folder = fs::path(DSM_TEST_FILES) / "kept";
@@ -129,7 +130,7 @@ TEST_F(TestKeptFiles, WhatIsDamagedIsNot)
   Overwrite(path, whole);
   EXPECT_EQ(this->GetKept().Load(bytes.size()), bytes);
   fs::rename(path, other);
-  vol::KeptFile(*this->File, 0, 0, this->Whole, "test2").Keep(bytes.data(), bytes.size());
+  vol::KeptFile({ this->File, 0, 0 }, this->Whole, "test2").Keep(bytes.data(), bytes.size());
   for (const auto& entry : fs::directory_iterator(path.parent_path()))
   {
     if (entry.path() != other)
@@ -137,7 +138,7 @@ TEST_F(TestKeptFiles, WhatIsDamagedIsNot)
       fs::copy_file(other, entry.path(), fs::copy_options::overwrite_existing);
     }
   }
-  EXPECT_TRUE(vol::KeptFile(*this->File, 0, 0, this->Whole, "test2").Load(bytes.size()).empty());
+  EXPECT_TRUE(vol::KeptFile({ this->File, 0, 0 }, this->Whole, "test2").Load(bytes.size()).empty());
 }
 
 TEST_F(TestKeptFiles, NothingIsWaitedForOrReadThatIsNoSuchFile)
@@ -209,7 +210,7 @@ TEST_F(TestKeptFiles, BoxesOutsideOfTheArrayAreNone)
     Overwrite(beginning + name, bytes);
   }
   Overwrite(beginning + "1_2_3_4_4_4", bytes);
-  const auto boxes = vol::KeptFile::FindBoxes(*this->File, 0, 0, "test1");
+  const auto boxes = vol::KeptFile::FindBoxes({ this->File, 0, 0 }, "test1");
   ASSERT_EQ(boxes.size(), 2u);
   for (const bricks::Box& box : boxes)
   {
@@ -223,8 +224,8 @@ TEST_F(TestKeptFiles, RangesThatCannotBeAreFoundAnew)
   const vol::ValueRanges found = this->Find();
   EXPECT_EQ(found.All[0].Least, 1.0);
   EXPECT_EQ(found.All[0].Greatest, 2.0);
-  const auto load = [&] { return vol::LoadRanges(*this->File, 0, 0, this->Whole, true); };
-  vol::KeepRanges(*this->File, 0, 0, this->Whole, found);
+  const auto load = [&] { return vol::LoadRanges({ this->File, 0, 0 }, this->Whole, true); };
+  vol::KeepRanges({ this->File, 0, 0 }, this->Whole, found);
   ASSERT_TRUE(load());
   EXPECT_EQ(load()->Finite[0].Greatest, 2.0);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -234,15 +235,15 @@ TEST_F(TestKeptFiles, RangesThatCannotBeAreFoundAnew)
   {
     vol::ValueRanges ranges = found;
     ranges.All[0] = range;
-    vol::KeepRanges(*this->File, 0, 0, this->Whole, ranges);
+    vol::KeepRanges({ this->File, 0, 0 }, this->Whole, ranges);
     EXPECT_FALSE(load()) << range.Least << " " << range.Greatest;
     ranges = found;
     ranges.Finite[0] = range;
-    vol::KeepRanges(*this->File, 0, 0, this->Whole, ranges);
+    vol::KeepRanges({ this->File, 0, 0 }, this->Whole, ranges);
     EXPECT_FALSE(load()) << "finite " << range.Least << " " << range.Greatest;
   }
   // A file filled with zeros is no range of (0, 0).
-  vol::KeepRanges(*this->File, 0, 0, this->Whole, found);
+  vol::KeepRanges({ this->File, 0, 0 }, this->Whole, found);
   const fs::path path = this->FindOnly();
   Overwrite(path, Bytes(static_cast<std::size_t>(fs::file_size(path))));
   EXPECT_FALSE(load());

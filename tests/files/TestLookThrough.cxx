@@ -137,7 +137,9 @@ class CountingReader final : public dsm::BlockReader
 public:
   CountingReader(
     const bricks::BrickLattice& lattice, const std::shared_ptr<const vol::VolumeFile>& file)
-    : Bricks(lattice, std::make_shared<vol::FileSamples>(file, 0, 0, vol::ChunkCache::GetShared()))
+    : Bricks(lattice,
+        std::make_shared<vol::FileSamples>(
+          vol::ArrayStep{ file, 0, 0 }, vol::ChunkCache::GetShared()))
   {
   }
   void Read(dsm::BlockId id, std::byte* block, std::size_t bytes) const override
@@ -169,7 +171,7 @@ Found FindIndex(const std::vector<bricks::Box>& pieces, bool look)
         std::optional<vol::Look> seen;
         if (look)
         {
-          seen = vol::LookThrough(file, 0, 0, pieces[rank], 2, GoOn);
+          seen = vol::LookThrough({ file, 0, 0 }, pieces[rank], 2, GoOn);
         }
         bricks::VoxelIndex::Pass pass;
         pass.Order.resize(lattice.GetBrickCount());
@@ -226,20 +228,20 @@ TEST(LookThrough, RangesAreOfTheBoxAlone)
     { bricks::Index3(48, 32, 32), Samples }, { bricks::Index3(0, 0, 40), Samples } };
   for (const bricks::Box& box : boxes)
   {
-    const auto look = vol::LookThrough(file, 0, 0, box, 3, GoOn);
-    const auto expected = vol::FindRanges(file, 0, 0, box, 1, GoOn);
+    const auto look = vol::LookThrough({ file, 0, 0 }, box, 3, GoOn);
+    const auto expected = vol::FindRanges({ file, 0, 0 }, box, 1, GoOn);
     ASSERT_TRUE(look && expected);
     EXPECT_EQ(look->Ranges.All[0].Least, expected->All[0].Least);
     EXPECT_EQ(look->Ranges.All[0].Greatest, expected->All[0].Greatest);
     EXPECT_EQ(look->Ranges.Finite[0].Greatest, expected->Finite[0].Greatest);
   }
-  EXPECT_FALSE(vol::LookThrough(file, 0, 0, boxes[0], 2, [](double) { return false; }));
+  EXPECT_FALSE(vol::LookThrough({ file, 0, 0 }, boxes[0], 2, [](double) { return false; }));
 }
 
 TEST(LookThrough, EachChunkIsReadAboutOnce)
 {
   const auto file = std::make_shared<const ComputedFile>(bricks::Index3(16));
-  ASSERT_TRUE(vol::LookThrough(file, 0, 0, { bricks::Index3(0), Samples }, 2, GoOn));
+  ASSERT_TRUE(vol::LookThrough({ file, 0, 0 }, { bricks::Index3(0), Samples }, 2, GoOn));
   EXPECT_EQ(file->Read, file->GetArrays().front().Grid.GetCount());
 }
 
@@ -284,8 +286,8 @@ TEST(LookThrough, WhatIsNotStoredIsNotRead)
     const auto whole = bricks::Box{ bricks::Index3(0), Samples };
     const auto all = std::make_shared<const SparseFile>(false, missing);
     const auto few = std::make_shared<const SparseFile>(true, missing);
-    const auto expected = vol::LookThrough(all, 0, 0, whole, 2, GoOn);
-    const auto found = vol::LookThrough(few, 0, 0, whole, 2, GoOn);
+    const auto expected = vol::LookThrough({ all, 0, 0 }, whole, 2, GoOn);
+    const auto found = vol::LookThrough({ few, 0, 0 }, whole, 2, GoOn);
     ASSERT_TRUE(expected && found);
     EXPECT_LT(few->Read, all->Read);
     const auto expectSame = [](const vol::ValueRanges& one, const vol::ValueRanges& other)
@@ -311,7 +313,7 @@ TEST(LookThrough, WhatIsNotStoredIsNotRead)
     EXPECT_EQ(survey.Crossed, expected->Bricks.Survey.Crossed);
     EXPECT_EQ(survey.CutOpen, expected->Bricks.Survey.CutOpen);
     const int before = few->Read;
-    const auto ranges = vol::FindRanges(few, 0, 0, whole, 2, GoOn);
+    const auto ranges = vol::FindRanges({ few, 0, 0 }, whole, 2, GoOn);
     ASSERT_TRUE(ranges);
     EXPECT_LE(few->Read, before + 4) << "two chunks, and the fill value for each thread";
     expectSame(*ranges, expected->Ranges);

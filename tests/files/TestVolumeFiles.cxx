@@ -4,7 +4,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/open/SeriesFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +61,8 @@ int CountWrong(const std::shared_ptr<const vol::VolumeFile>& file, const Json& e
 {
   const vol::FileArray& array = file->GetArrays()[number];
   std::vector<std::byte> bytes(static_cast<std::size_t>(box.GetCount()) * array.GetSampleBytes());
-  scattered ? cache.ReadScattered(file, number, step, box, bytes.data())
-            : cache.ReadBox(file, number, step, box, bytes.data());
+  scattered ? cache.ReadScattered({ file, number, step }, box, bytes.data())
+            : cache.ReadBox({ file, number, step }, box, bytes.data());
   return bricks::Dispatch(array.Type,
     [&](auto zero)
     {
@@ -206,8 +206,8 @@ TEST(VolumeFiles, LargeChunksThatAreNotCompressedAreShownInParts)
       }
       std::vector<std::uint8_t> read(static_cast<std::size_t>(box.GetCount()) * width);
       auto* const bytes = reinterpret_cast<std::byte*>(read.data());
-      round % 2 == 0 ? cache.ReadBox(file, 0, 0, box, bytes)
-                     : cache.ReadScattered(file, 0, 0, box, bytes);
+      round % 2 == 0 ? cache.ReadBox({ file, 0, 0 }, box, bytes)
+                     : cache.ReadScattered({ file, 0, 0 }, box, bytes);
       std::size_t next = 0;
       int wrong = 0;
       for (std::int64_t z = box.Min.z; z < box.Max.z; ++z)
@@ -341,27 +341,27 @@ TEST(VolumeFiles, RangesAreFoundAndKept)
   const auto file = Open(entry);
   const bricks::Box whole{ bricks::Index3(0), file->GetArrays()[1].Grid.Samples };
   const bricks::Box corner{ bricks::Index3(0), bricks::Index3(2, 1, 1) };
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
-  const auto found = vol::FindRanges(file, 1, 0, whole, 3, [](double) { return true; });
+  EXPECT_FALSE(vol::LoadRanges({ file, 1, 0 }, whole, true));
+  const auto found = vol::FindRanges({ file, 1, 0 }, whole, 3, [](double) { return true; });
   ASSERT_TRUE(found);
   ASSERT_EQ(found->All.size(), 4u);
   EXPECT_EQ(found->All[2].Least, 0.0);
   EXPECT_EQ(found->All[2].Greatest, 100.0);
   EXPECT_GT(found->All[3].Greatest, 170.0);
-  const auto part = vol::FindRanges(file, 1, 0, corner, 2, [](double) { return true; });
+  const auto part = vol::FindRanges({ file, 1, 0 }, corner, 2, [](double) { return true; });
   EXPECT_EQ(part->All[1].Least, 1.0);
   EXPECT_EQ(part->All[1].Greatest, 4.0);
   EXPECT_EQ(part->All[3].Least, std::sqrt(0.0 + 1.0 + 4.0));
-  vol::KeepRanges(*file, 1, 0, whole, *found);
-  const auto kept = vol::LoadRanges(*file, 1, 0, whole, true);
+  vol::KeepRanges({ file, 1, 0 }, whole, *found);
+  const auto kept = vol::LoadRanges({ file, 1, 0 }, whole, true);
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->All[3].Greatest, found->All[3].Greatest);
   // A rank's share may have those of more; what is asked for itself has its own.
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, corner, false));
-  const auto share = vol::LoadRanges(*file, 1, 0, corner, true);
+  EXPECT_FALSE(vol::LoadRanges({ file, 1, 0 }, corner, false));
+  const auto share = vol::LoadRanges({ file, 1, 0 }, corner, true);
   ASSERT_TRUE(share);
   EXPECT_EQ(share->All[3].Greatest, found->All[3].Greatest);
-  EXPECT_FALSE(vol::FindRanges(file, 1, 0, whole, 1, [](double) { return false; }));
+  EXPECT_FALSE(vol::FindRanges({ file, 1, 0 }, whole, 1, [](double) { return false; }));
 }
 
 /// What some ranks found of their shares is known to others with other shares.
@@ -375,19 +375,19 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
   const bricks::Box whole{ bricks::Index3(0), samples };
   const auto keepShare = [&](const bricks::Box& share)
   {
-    vol::KeepRanges(
-      *file, 1, 0, share, *vol::FindRanges(file, 1, 0, share, 1, [](double) { return true; }));
+    vol::KeepRanges({ file, 1, 0 }, share,
+      *vol::FindRanges({ file, 1, 0 }, share, 1, [](double) { return true; }));
   };
   // Cut in x, and one half of it in y; neighbors share a plane of samples.
   const bricks::Index3 middle = samples / std::int64_t(2);
   keepShare({ bricks::Index3(0), { middle.x + 1, samples.y, samples.z } });
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
+  EXPECT_FALSE(vol::LoadRanges({ file, 1, 0 }, whole, true));
   keepShare({ { middle.x, 0, 0 }, { samples.x, middle.y + 1, samples.z } });
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, true));
+  EXPECT_FALSE(vol::LoadRanges({ file, 1, 0 }, whole, true));
   keepShare({ middle * bricks::Index3(1, 1, 0), samples });
-  EXPECT_FALSE(vol::LoadRanges(*file, 1, 0, whole, false));
-  const auto known = vol::LoadRanges(*file, 1, 0, whole, true);
-  const auto found = vol::FindRanges(file, 1, 0, whole, 1, [](double) { return true; });
+  EXPECT_FALSE(vol::LoadRanges({ file, 1, 0 }, whole, false));
+  const auto known = vol::LoadRanges({ file, 1, 0 }, whole, true);
+  const auto found = vol::FindRanges({ file, 1, 0 }, whole, 1, [](double) { return true; });
   ASSERT_TRUE(known);
   ASSERT_TRUE(found);
   ASSERT_FALSE(found->All.empty());
@@ -400,8 +400,8 @@ TEST(VolumeFiles, RangesOfSharesArePutTogether)
     EXPECT_EQ(known->Finite[index].Least, found->Finite[index].Least);
     EXPECT_EQ(known->Finite[index].Greatest, found->Finite[index].Greatest);
   }
-  EXPECT_TRUE(vol::LoadRanges(*file, 1, 0, { middle, samples }, true));
-  EXPECT_FALSE(vol::LoadRanges(*file, 0, 0, whole, true));
+  EXPECT_TRUE(vol::LoadRanges({ file, 1, 0 }, { middle, samples }, true));
+  EXPECT_FALSE(vol::LoadRanges({ file, 0, 0 }, whole, true));
 }
 
 /// VTK's attribute of the points' values.
@@ -440,10 +440,10 @@ TEST(VolumeFiles, ThatNobodyHasAreClosed)
   const auto other = vol::OpenCachedVolume({ (GetFolder() / "deflate.h5").string() }, {});
   const bricks::Box corner{ bricks::Index3(0), bricks::Index3(2) };
   std::vector<std::byte> bytes(64);
-  cache.ReadBox(file, 0, 0, corner, bytes.data());
+  cache.ReadBox({ file, 0, 0 }, corner, bytes.data());
   const std::size_t one = cache.GetBytes() - held;
   EXPECT_GT(one, 0u);
-  cache.ReadBox(other, 0, 0, corner, bytes.data());
+  cache.ReadBox({ other, 0, 0 }, corner, bytes.data());
   const std::size_t both = cache.GetBytes() - held;
   EXPECT_GT(countOpen(), before);
   file.reset();

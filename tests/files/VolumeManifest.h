@@ -2,7 +2,7 @@
 #ifndef tests_files_VolumeManifest_h
 #define tests_files_VolumeManifest_h
 
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <nlohmann/json.hpp>
 

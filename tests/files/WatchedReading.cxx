@@ -2,6 +2,7 @@
 #include "WatchedReading.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <gtest/gtest.h>
 

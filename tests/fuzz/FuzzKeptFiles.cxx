@@ -43,10 +43,10 @@ Places MakePlaces()
   setenv("XDG_CACHE_HOME", cache.c_str(), 1);
   Places places;
   const fuzz::KeptVolume& volume = places.Volume;
-  vol::KeepRanges(*volume.File, 0, 0, volume.Whole, vol::ValueRanges(1));
+  vol::KeepRanges({ volume.File, 0, 0 }, volume.Whole, vol::ValueRanges(1));
   places.Ranges = TakeKept(cache / "dsm-ray-tracer", {});
   const std::vector<std::byte> index = volume.MakeIndex(nullptr, 0).Encode();
-  vol::KeptFile(*volume.File, 0, 0, volume.Whole, IndexKind).Keep(index.data(), index.size());
+  vol::KeptFile({ volume.File, 0, 0 }, volume.Whole, IndexKind).Keep(index.data(), index.size());
   places.Index = TakeKept(cache / "dsm-ray-tracer", places.Ranges);
   return places;
 }
@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
   if (kind == 0)
   {
     fuzz::WriteInput(places.Ranges, content, contentBytes);
-    const auto ranges = vol::LoadRanges(*volume.File, 0, 0, volume.Whole, true);
+    const auto ranges = vol::LoadRanges({ volume.File, 0, 0 }, volume.Whole, true);
     if (ranges && ranges->All.size() != 1)
     {
       fuzz::Fail("the ranges are those of another number of components");
@@ -83,7 +83,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
   {
     fuzz::WriteInput(places.Index, content, contentBytes);
     const std::size_t indexBytes = bricks::VoxelIndex::CountBytes(volume.Lattice.GetBrickCount());
-    UseIndex(volume, vol::KeptFile(*volume.File, 0, 0, volume.Whole, IndexKind).Load(indexBytes));
+    UseIndex(
+      volume, vol::KeptFile({ volume.File, 0, 0 }, volume.Whole, IndexKind).Load(indexBytes));
   }
   else
   {

@@ -5,7 +5,7 @@
 #include "InputFolder.h"
 
 #include "DSMBricks/build/VoxelIndex.h"
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include <algorithm>
 #include <string>

@@ -5,6 +5,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "DSMVolumeFiles/range/ValueRanges.h"
 #include "IndexCheck.h"
 
@@ -215,11 +216,11 @@ void CheckGeometry(const vol::FileGeometry& geometry)
     "indices of points are beyond those that VTK has");
 }
 
-void CheckValues(
-  const vol::VolumeFile& file, const std::vector<std::string>& names, std::size_t array, int step)
+void CheckValues(const vol::ArrayStep& of, const std::vector<std::string>& names)
 {
-  const vol::ChunkGrid& grid = file.GetArrays()[array].Grid;
-  const ChunkCheck check(file, names, array, step);
+  const vol::VolumeFile& file = *of.File;
+  const vol::ChunkGrid& grid = of.Get().Grid;
+  const ChunkCheck check(file, names, of.Array, of.Step);
   const bricks::Index3 last = grid.GetCounts() - bricks::Index3(1);
   const auto isLess = [](const bricks::Index3& a, const bricks::Index3& b)
   { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); };
@@ -233,9 +234,9 @@ void CheckValues(
   {
     check.Check(chunk);
   }
-  Try(names, [&] { CheckIndex(file.GetArrays()[array], file.ReadIndex(array, step)); });
+  Try(names, [&] { CheckIndex(of.Get(), file.ReadIndex(of.Array, of.Step)); });
   const bricks::Box whole{ bricks::Index3(0), grid.Samples };
-  Try(names, [&] { vol::LoadRanges(file, array, step, whole, true); });
+  Try(names, [&] { vol::LoadRanges(of, whole, true); });
 }
 
 } // namespace
@@ -264,7 +265,7 @@ int CheckVolume(const std::filesystem::path& path, const vol::OpenOptions& optio
     Try(names, [&] { file->GetOrigin(step); });
     for (std::size_t array = 0; array < std::min(MostArrays, file->GetArrays().size()); ++array)
     {
-      CheckValues(*file, names, array, step);
+      CheckValues({ file, array, step }, names);
     }
   }
   return file->GetLevels();

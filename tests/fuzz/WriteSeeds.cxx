@@ -93,7 +93,7 @@ void WriteKept(const fs::path& folder)
     list->front().Add(0.0);
     list->front().Add(100.0);
   }
-  vol::KeepRanges(*volume.File, 0, 0, volume.Whole, ranges);
+  vol::KeepRanges({ volume.File, 0, 0 }, volume.Whole, ranges);
   for (const auto& entry : fs::directory_iterator(cache / "dsm-ray-tracer"))
   {
     std::ifstream file(entry.path(), std::ios::binary);

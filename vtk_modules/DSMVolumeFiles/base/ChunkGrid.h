@@ -46,6 +46,12 @@ struct ChunkGrid
   {
     return box.Min == bricks::Index3(0) && box.Max == this->Samples;
   }
+  /// Chunks that have samples of a box, which is not empty.
+  bricks::Box GetChunks(const bricks::Box& box) const
+  {
+    return { box.Min / this->ChunkSamples,
+      (box.Max - bricks::Index3(1)) / this->ChunkSamples + bricks::Index3(1) };
+  }
   /// The samples of a chunk that belong to the volume.
   bricks::Box GetBox(const bricks::Index3& chunk) const
   {

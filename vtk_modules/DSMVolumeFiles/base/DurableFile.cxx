@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/base/DurableFile.h"
 
+#include "DSMVolumeFiles/base/Descriptor.h"
 #include "DSMVolumeFiles/base/FileError.h"
 
 #include "DSMCore/base/Error.h"
@@ -22,26 +23,6 @@ namespace vol
 
 namespace
 {
-
-/// Closes a file descriptor.
-class Descriptor
-{
-public:
-  explicit Descriptor(int number)
-    : Number(number)
-  {
-  }
-  ~Descriptor() { this->Close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int Get() const { return this->Number; }
-  /// Some file systems report a failed write only here.
-  bool Close() { return this->Number < 0 || close(std::exchange(this->Number, -1)) == 0; }
-
-private:
-  int Number;
-};
 
 [[noreturn]] void Refuse(const std::string& path, int cause)
 {

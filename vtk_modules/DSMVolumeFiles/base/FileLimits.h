@@ -47,9 +47,10 @@ constexpr std::size_t JsonDepth = 64;
 
 } // namespace FileLimits
 
-/// Multiplies numbers from a file. Returns nothing where the product exceeds `most`, which it never wraps around.
-inline std::optional<std::uint64_t> MultiplyWithin(
-  std::uint64_t most, std::initializer_list<std::uint64_t> factors)
+/// Multiplies numbers from a file, none of which is negative. Returns nothing where the product exceeds `most`, which
+/// it never wraps around.
+template <class Factors = std::initializer_list<std::uint64_t>>
+std::optional<std::uint64_t> MultiplyWithin(std::uint64_t most, const Factors& factors)
 {
   std::uint64_t product = 1;
   bool isZero = false;

@@ -53,22 +53,16 @@ PositionedFile::PositionedFile(std::string path)
     throw WouldWait{ true };
   }
   // A pipe would be waited for.
-  this->Descriptor = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  this->Whole = Descriptor(open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat state
   {
   };
-  if (this->Descriptor < 0 || fstat(this->Descriptor, &state) != 0)
+  if (!this->Whole.IsOpen() || fstat(this->Whole.Get(), &state) != 0)
   {
-    const std::string cause = std::strerror(errno);
-    if (this->Descriptor >= 0)
-    {
-      close(this->Descriptor);
-    }
-    throw FileError(this->Path, "cannot be opened: " + cause + ".");
+    throw FileError(this->Path, "cannot be opened: " + std::string(std::strerror(errno)) + ".");
   }
   if (!S_ISREG(state.st_mode) && !S_ISDIR(state.st_mode)) // a folder has a stamp, too
   {
-    close(this->Descriptor);
     throw FileError(this->Path, "cannot be read in parts because it is a device or a pipe.");
   }
   this->OfDirectory = S_ISDIR(state.st_mode);
@@ -76,23 +70,14 @@ PositionedFile::PositionedFile(std::string path)
   this->Stamp = GetStampOf(state);
   if (this->Bytes >= SmallestWithReadAhead)
   {
-    this->Scattered = open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (this->Scattered >= 0 &&
-      (fstat(this->Scattered, &state) != 0 || GetStampOf(state) != this->Stamp ||
-        posix_fadvise(this->Scattered, 0, 0, POSIX_FADV_RANDOM) != 0))
+    Descriptor scattered(open(this->Path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (scattered.IsOpen() && fstat(scattered.Get(), &state) == 0 &&
+      GetStampOf(state) == this->Stamp &&
+      posix_fadvise(scattered.Get(), 0, 0, POSIX_FADV_RANDOM) == 0)
     {
-      close(std::exchange(this->Scattered, -1));
+      this->Scattered = std::move(scattered);
     }
   }
-}
-
-PositionedFile::~PositionedFile()
-{
-  if (this->Scattered >= 0)
-  {
-    close(this->Scattered);
-  }
-  close(this->Descriptor);
 }
 
 std::uint64_t PositionedFile::FindStampOf(const std::string& path)
@@ -108,7 +93,7 @@ bool PositionedFile::IsUnchanged() const
   struct stat state
   {
   };
-  return fstat(this->Descriptor, &state) != 0 || GetStampOf(state) == this->Stamp;
+  return fstat(this->Whole.Get(), &state) != 0 || GetStampOf(state) == this->Stamp;
 }
 
 void PositionedFile::CheckUnchanged() const
@@ -166,8 +151,8 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
 {
   const auto place = [&](std::uint64_t at) { return " at byte " + std::to_string(at); };
   const bool waits = !WithoutWaiting::IsInForce();
-  const bool isScattered = this->Scattered >= 0 && ScatteredReads::AreInForce();
-  const int descriptor = isScattered ? this->Scattered : this->Descriptor;
+  const bool isScattered = this->Scattered.IsOpen() && ScatteredReads::AreInForce();
+  const int descriptor = (isScattered ? this->Scattered : this->Whole).Get();
   if (isScattered && waits)
   {
     this->Prefetch(offset, bytes);
@@ -205,13 +190,13 @@ void PositionedFile::ReadUnchecked(std::uint64_t offset, std::byte* out, std::si
 void PositionedFile::Prefetch(std::uint64_t offset, std::size_t bytes) const
 {
   std::uint64_t end = offset + bytes;
-  if (this->Scattered >= 0)
+  if (this->Scattered.IsOpen())
   {
     offset = offset / Window * Window;
     end = (end + Window - 1) / Window * Window;
   }
   // A hint: where the system does not take it, nothing is lost.
-  posix_fadvise(this->Descriptor, static_cast<off_t>(offset), static_cast<off_t>(end - offset),
+  posix_fadvise(this->Whole.Get(), static_cast<off_t>(offset), static_cast<off_t>(end - offset),
     POSIX_FADV_WILLNEED);
 }
 

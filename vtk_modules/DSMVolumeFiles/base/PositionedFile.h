@@ -2,6 +2,9 @@
 #ifndef vol_PositionedFile_h
 #define vol_PositionedFile_h
 
+#include "DSMVolumeFiles/base/ByteSource.h"
+#include "DSMVolumeFiles/base/Descriptor.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,20 +14,17 @@ namespace vol
 {
 
 /// An open file that is read at given places. Any thread.
-class PositionedFile
+class PositionedFile final : public ByteSource
 {
 public:
   /// Throws dsm::Error when it cannot be opened; WouldWait (WithoutWaiting), as a disk has to be asked.
   explicit PositionedFile(std::string path);
-  ~PositionedFile();
-  PositionedFile(const PositionedFile&) = delete;
-  PositionedFile& operator=(const PositionedFile&) = delete;
 
-  const std::string& GetPath() const { return this->Path; }
+  const std::string& GetPath() const override { return this->Path; }
   /// A directory has a stamp, but no bytes that can be read.
   bool IsDirectory() const { return this->OfDirectory; }
   /// When it was opened.
-  std::uint64_t GetBytes() const { return this->Bytes; }
+  std::uint64_t GetBytes() const override { return this->Bytes; }
   /// Differs, for all practical purposes, when another file is there, or this one was written to: of
   /// inode, size and time of change, when it was opened. The same on all hosts that share a file system.
   std::uint64_t GetStamp() const { return this->Stamp; }
@@ -42,21 +42,16 @@ public:
   /// Likewise, but also reads a file that has changed since it was opened.
   void ReadUnchecked(std::uint64_t offset, std::byte* out, std::size_t bytes) const;
 
-  struct Piece
-  {
-    std::uint64_t Offset;
-    std::size_t Bytes;
-  };
   /// Likewise, for many pieces in ascending order of offset; their bytes are stored one piece behind the
   /// other. Pieces with less than two pages between them are read together, including the gap: the rows of a
   /// box are many, and small.
-  void Read(const std::vector<Piece>& pieces, std::byte* out) const;
+  void Read(const std::vector<Piece>& pieces, std::byte* out) const override;
 
   /// The system may read them to its own cache already, of a large file with what is in the same 32 KiB; does not
   /// wait for it.
   void Prefetch(std::uint64_t offset, std::size_t bytes) const;
   /// Likewise, for pieces in any order, grouped as by Read.
-  void Prefetch(std::vector<Piece> pieces) const;
+  void Prefetch(std::vector<Piece> pieces) const override;
 
 private:
   /// Several pieces that are read together: those from First up to Last, and bytes from Begin up to End.
@@ -71,8 +66,9 @@ private:
   static Run FindRun(const std::vector<Piece>& pieces, std::vector<Piece>::const_iterator first);
 
   std::string Path;
-  int Descriptor = -1;
-  int Scattered = -1; ///< the same file, in which the system does not read ahead; none: it is small
+  Descriptor Whole;
+  Descriptor
+    Scattered; ///< the same file, in which the system does not read ahead; none: it is small
   bool OfDirectory = false;
   std::uint64_t Bytes = 0;
   std::uint64_t Stamp = 0;

@@ -90,6 +90,14 @@ std::string GetStem(const std::string& path)
   return (stem.extension() == ".ome" ? stem.stem() : stem).string();
 }
 
+std::string ToLower(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+    [](char letter)
+    { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; });
+  return text;
+}
+
 std::string Quote(const std::string& text)
 {
   constexpr std::size_t most = 100;

@@ -40,6 +40,9 @@ std::string ListNames(
 /// Returns a file's name without its folder and extension.
 std::string GetStem(const std::string& path);
 
+/// Lower-case text. As in the "C" locale: what a program sets for its own texts does not change what a file says.
+std::string ToLower(std::string text);
+
 /// Text of a file in quotation marks, for messages: shortened, and without control characters.
 std::string Quote(const std::string& text);
 

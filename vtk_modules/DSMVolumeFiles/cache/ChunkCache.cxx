@@ -6,7 +6,7 @@
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
-#include "DSMVolumeFiles/format/SeriesFile.h"
+#include "DSMVolumeFiles/open/SeriesFile.h"
 
 #include <atomic>
 #include <exception>
@@ -30,25 +30,6 @@ constexpr std::size_t EntryBytes = 400;
 
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
-
-/// Those that have samples of a box; x fastest.
-template <class Visit>
-void ForEachChunk(const ChunkGrid& grid, const bricks::Box& box, const Visit& visit)
-{
-  const bricks::Index3 first = box.Min / grid.ChunkSamples;
-  const bricks::Index3 last = (box.Max - bricks::Index3(1)) / grid.ChunkSamples;
-  bricks::Index3 chunk;
-  for (chunk.z = first.z; chunk.z <= last.z; ++chunk.z)
-  {
-    for (chunk.y = first.y; chunk.y <= last.y; ++chunk.y)
-    {
-      for (chunk.x = first.x; chunk.x <= last.x; ++chunk.x)
-      {
-        visit(chunk);
-      }
-    }
-  }
-}
 
 } // namespace
 
@@ -158,11 +139,10 @@ std::uint64_t ChunkCache::GetBytesRead() const
   return this->BytesRead;
 }
 
-ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Index3& chunk)
+ChunkCache::Chunk ChunkCache::Get(const ArrayStep& of, const bricks::Index3& chunk)
 {
-  const FileArray& what = file->GetArrays()[array];
-  const Key key{ file->GetNumber(), array, step, what.Grid.GetNumber(chunk) };
+  const FileArray& what = of.Get();
+  const Key key{ of.File->GetNumber(), of.Array, of.Step, what.Grid.GetNumber(chunk) };
   const std::size_t chunkBytes =
     static_cast<std::size_t>(what.Grid.GetBox(chunk).GetCount()) * what.GetSampleBytes();
   const std::size_t inHand = chunkBytes * InHandOfEach;
@@ -189,7 +169,7 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
       }
       catch (const WouldWait&) // told to who began to read it, not to this thread
       {
-        return this->Get(file, array, step, chunk);
+        return this->Get(of, chunk);
       }
     }
     const auto hasRoom = [&]
@@ -213,11 +193,11 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
       {
         bytes = std::make_shared<ByteBuffer>(chunkBytes);
       }
-      file->ReadChunk(array, step, chunk, bytes->data());
+      of.File->ReadChunk(of.Array, of.Step, chunk, bytes->data());
     }
     catch (const std::bad_alloc&)
     {
-      throw FileError({ file->GetPath(), what.Name, chunk },
+      throw FileError({ of.File->GetPath(), what.Name, chunk },
         "cannot be read: out of memory for its " + std::to_string(chunkBytes) +
           " bytes. Use a host with more memory, or write the file with "
           "smaller chunks.");
@@ -255,27 +235,25 @@ ChunkCache::Chunk ChunkCache::Get(const std::shared_ptr<const VolumeFile>& file,
   }
 }
 
-void ChunkCache::ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const bricks::Box& box, std::byte* out)
+void ChunkCache::ReadBox(const ArrayStep& of, const bricks::Box& box, std::byte* out)
 {
-  this->Read(file, array, step, box, false, out);
+  this->Read(of, box, false, out);
 }
 
-void ChunkCache::ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Box& box, std::byte* out)
+void ChunkCache::ReadScattered(const ArrayStep& of, const bricks::Box& box, std::byte* out)
 {
   const ScatteredReads scope;
-  this->Read(file, array, step, box, true, out);
+  this->Read(of, box, true, out);
 }
 
-void ChunkCache::ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const std::vector<bricks::Box>& boxes, const std::vector<std::byte*>& outs, int threads)
+void ChunkCache::ReadBoxes(const ArrayStep& of, const std::vector<bricks::Box>& boxes,
+  const std::vector<std::byte*>& outs, int threads)
 {
-  const FileArray& what = file->GetArrays()[array];
+  const FileArray& what = of.Get();
   std::map<std::int64_t, std::vector<std::size_t>> wanted; // by which boxes a chunk is
   for (std::size_t box = 0; box < boxes.size(); ++box)
   {
-    ForEachChunk(what.Grid, boxes[box],
+    bricks::ForEachIndex(what.Grid.GetChunks(boxes[box]),
       [&](const bricks::Index3& chunk) { wanted[what.Grid.GetNumber(chunk)].push_back(box); });
   }
   const std::vector<std::pair<std::int64_t, std::vector<std::size_t>>> chunks(
@@ -285,7 +263,7 @@ void ChunkCache::ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::s
     {
       const bricks::Index3 chunk = what.Grid.GetChunk(chunks[index].first);
       const bricks::Box part = what.Grid.GetBox(chunk);
-      const Chunk samples = this->Get(file, array, step, chunk);
+      const Chunk samples = this->Get(of, chunk);
       for (const std::size_t box : chunks[index].second)
       {
         CopyBox(bricks::Intersect(part, boxes[box]), samples->data(), part, outs[box], boxes[box],
@@ -294,33 +272,30 @@ void ChunkCache::ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::s
     });
 }
 
-bool ChunkCache::HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Index3& chunk) const
+bool ChunkCache::HasChunk(const ArrayStep& of, const bricks::Index3& chunk) const
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   return this->Entries.count(
-           { file->GetNumber(), array, step, file->GetArrays()[array].Grid.GetNumber(chunk) }) != 0;
+           { of.File->GetNumber(), of.Array, of.Step, of.Get().Grid.GetNumber(chunk) }) != 0;
 }
 
-void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-  const bricks::Box& box, bool scattered, std::byte* out)
+void ChunkCache::Read(const ArrayStep& of, const bricks::Box& box, bool scattered, std::byte* out)
 {
-  if (this->ReadWithHalo(file, array, step, box, out) ||
-    this->ReadFill(file, array, step, box, out))
+  if (this->ReadWithHalo(of, box, out) || this->ReadFill(of, box, out))
   {
     return;
   }
   ByteBuffer dense;
-  const FileArray& what = file->GetArrays()[array];
-  ForEachChunk(what.Grid, box,
+  const FileArray& what = of.Get();
+  bricks::ForEachIndex(what.Grid.GetChunks(box),
     [&](const bricks::Index3& chunk)
     {
       const bricks::Box part = what.Grid.GetBox(chunk);
       const bricks::Box common = bricks::Intersect(part, box);
-      if (scattered && !this->HasChunk(file, array, step, chunk))
+      if (scattered && !this->HasChunk(of, chunk))
       {
         dense.resize(static_cast<std::size_t>(common.GetCount()) * what.GetSampleBytes());
-        if (file->ReadPart(array, step, chunk, common, dense.data()))
+        if (of.File->ReadPart(of.Array, of.Step, chunk, common, dense.data()))
         {
           CopyBox(common, dense.data(), common, out, box, what.GetSampleBytes());
           const std::lock_guard<std::mutex> lock(this->Guard);
@@ -328,19 +303,18 @@ void ChunkCache::Read(const std::shared_ptr<const VolumeFile>& file, std::size_t
           return;
         }
       }
-      const Chunk samples = this->Get(file, array, step, chunk);
+      const Chunk samples = this->Get(of, chunk);
       CopyBox(common, samples->data(), part, out, box, what.GetSampleBytes());
     });
 }
 
-bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Box& box, std::byte* out)
+bool ChunkCache::ReadWithHalo(const ArrayStep& of, const bricks::Box& box, std::byte* out)
 {
-  const FileArray& what = file->GetArrays()[array];
+  const FileArray& what = of.Get();
   const bricks::Index3 chunk = box.Min / what.Grid.ChunkSamples;
   const bricks::Box all = what.Grid.GetBoxWithHalo(chunk);
-  if (all.Min != box.Min || all.Max != box.Max || this->HasChunk(file, array, step, chunk) ||
-    !file->ReadWithHalo(array, step, chunk, out))
+  if (all.Min != box.Min || all.Max != box.Max || this->HasChunk(of, chunk) ||
+    !of.File->ReadWithHalo(of.Array, of.Step, chunk, out))
   {
     return false;
   }
@@ -349,26 +323,24 @@ bool ChunkCache::ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std
   return true;
 }
 
-bool ChunkCache::ReadFill(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Box& box, std::byte* out)
+bool ChunkCache::ReadFill(const ArrayStep& of, const bricks::Box& box, std::byte* out)
 {
-  const FileArray& what = file->GetArrays()[array];
+  const FileArray& what = of.Get();
   const bricks::Index3 chunk = box.Min / what.Grid.ChunkSamples;
   const bool isInOne = bricks::Intersect(what.Grid.GetBox(chunk), box).GetCount() == box.GetCount();
-  if (isInOne || !file->IsFill(array, step, box))
+  if (isInOne || !of.File->IsFill(of.Array, of.Step, box))
   {
     return false;
   }
-  const Chunk samples = this->Get(file, array, step, chunk);
+  const Chunk samples = this->Get(of, chunk);
   Repeat(samples->data(), what.GetSampleBytes(), out,
     static_cast<std::size_t>(box.GetCount()) * what.GetSampleBytes());
   return true;
 }
 
-void ChunkCache::Prefetch(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const std::vector<bricks::Box>& boxes) const
+void ChunkCache::Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes) const
 {
-  const FileArray& what = file->GetArrays()[array];
+  const FileArray& what = of.Get();
   try
   {
     std::vector<VolumeFile::ChunkPart> parts;
@@ -377,16 +349,16 @@ void ChunkCache::Prefetch(const std::shared_ptr<const VolumeFile>& file, std::si
       // Samples that a brick needs beyond its own cells belong to another brick, too.
       const bricks::Box own{ box.Min,
         glm::max(box.Min + bricks::Index3(1), box.Max - bricks::Index3(Overlap)) };
-      ForEachChunk(what.Grid, own,
+      bricks::ForEachIndex(what.Grid.GetChunks(own),
         [&](const bricks::Index3& chunk)
         {
-          if (!this->HasChunk(file, array, step, chunk))
+          if (!this->HasChunk(of, chunk))
           {
             parts.push_back({ chunk, bricks::Intersect(what.Grid.GetBox(chunk), box) });
           }
         });
     }
-    file->Prefetch(array, step, parts);
+    of.File->Prefetch(of.Array, of.Step, parts);
   }
   catch (const std::exception&)
   {

@@ -3,7 +3,7 @@
 #define vol_ChunkCache_h
 
 #include "DSMVolumeFiles/base/ByteBuffer.h"
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/format/ArrayStep.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -63,24 +63,20 @@ public:
 
   /// The samples of a chunk, as VolumeFile::ReadChunk gives them. Throws what that throws, to all who wait; the
   /// next one who asks tries again. Where a thread is not to wait (WithoutWaiting), not for another one either.
-  Chunk Get(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Index3& chunk);
+  Chunk Get(const ArrayStep& of, const bricks::Index3& chunk);
 
   /// The samples of a box of an array, dense, x fastest, through the cache.
-  void ReadBox(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Box& box, std::byte* out);
+  void ReadBox(const ArrayStep& of, const bricks::Box& box, std::byte* out);
   /// The same for boxes far from one another: of chunks that are not here, no more is read than must be.
-  void ReadScattered(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Box& box, std::byte* out);
+  void ReadScattered(const ArrayStep& of, const bricks::Box& box, std::byte* out);
 
   /// The samples of boxes, likewise, each to its own place, by so many threads; each chunk is read once for all of them.
-  void ReadBoxes(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const std::vector<bricks::Box>& boxes, const std::vector<std::byte*>& outs, int threads);
+  void ReadBoxes(const ArrayStep& of, const std::vector<bricks::Box>& boxes,
+    const std::vector<std::byte*>& outs, int threads);
 
   /// Boxes will probably be read soon: advises the system of their chunks that are not cached, each one once.
   /// Errors are reported when the boxes are read.
-  void Prefetch(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const std::vector<bricks::Box>& boxes) const;
+  void Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes) const;
 
 private:
   /// The cache does not keep a file open.
@@ -108,16 +104,12 @@ private:
     std::list<Key>::iterator Place;
   };
 
-  void Read(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Box& box, bool scattered, std::byte* out);
-  bool HasChunk(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Index3& chunk) const;
+  void Read(const ArrayStep& of, const bricks::Box& box, bool scattered, std::byte* out);
+  bool HasChunk(const ArrayStep& of, const bricks::Index3& chunk) const;
   /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
-  bool ReadWithHalo(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Box& box, std::byte* out);
+  bool ReadWithHalo(const ArrayStep& of, const bricks::Box& box, std::byte* out);
   /// A box of several chunks, none of which is stored.
-  bool ReadFill(const std::shared_ptr<const VolumeFile>& file, std::size_t array, int step,
-    const bricks::Box& box, std::byte* out);
+  bool ReadFill(const ArrayStep& of, const bricks::Box& box, std::byte* out);
   /// Under the lock, as GetRoom without it.
   std::size_t ComputeRoom() const
   {

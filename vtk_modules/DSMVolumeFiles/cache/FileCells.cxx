@@ -8,19 +8,19 @@
 namespace vol
 {
 
-FileCells::FileCells(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-  const FileSamples::Part& part, ChunkCache& cache, bool scattered)
+FileCells::FileCells(
+  const ArrayStep& of, const FileSamples::Part& part, ChunkCache& cache, bool scattered)
   : Cells{ bricks::Index3(0), part.Samples.GetSize() }
-  , Type(file->GetArrays()[array].Type)
+  , Type(of.Get().Type)
   , ResultType(part.Type)
-  , IsMagnitude(part.Component == FileSamples::Magnitude && file->GetArrays()[array].Components > 1)
+  , IsMagnitude(part.Component == FileSamples::Magnitude && of.Get().Components > 1)
 {
-  const int count = this->IsMagnitude ? file->GetArrays()[array].Components : 1;
+  const int count = this->IsMagnitude ? of.Get().Components : 1;
   for (int number = 0; number < count; ++number)
   {
     const int component = this->IsMagnitude ? number : std::max(part.Component, 0);
-    this->Components.emplace_back(file, array, step,
-      FileSamples::Part{ part.Samples, component, this->Type }, cache, scattered);
+    this->Components.emplace_back(
+      of, FileSamples::Part{ part.Samples, component, this->Type }, cache, scattered);
   }
 }
 

@@ -17,8 +17,7 @@ class FileCells final : public bricks::CellReader
 {
 public:
   /// `part`: the cells; see FileSamples.
-  FileCells(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-    const FileSamples::Part& part, ChunkCache& cache, bool scattered);
+  FileCells(const ArrayStep& of, const FileSamples::Part& part, ChunkCache& cache, bool scattered);
 
   bricks::Box GetCells() const override { return this->Cells; }
   bricks::Box GetReach() const override { return this->Cells; }

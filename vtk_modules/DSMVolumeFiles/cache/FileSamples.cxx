@@ -45,21 +45,16 @@ void FindMagnitudes(const Native* from, const Samples& samples, Result* out)
 
 } // namespace
 
-FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-  const Part& part, ChunkCache& cache, bool scattered)
-  : File(std::move(file))
-  , Array(array)
-  , Step(step)
+FileSamples::FileSamples(const ArrayStep& of, const Part& part, ChunkCache& cache, bool scattered)
+  : Of(of)
   , Read(part)
   , Cache(cache)
   , Scattered(scattered)
 {
 }
 
-FileSamples::FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-  ChunkCache& cache, bool scattered)
-  : FileSamples(file, array, step,
-      { { bricks::Index3(0), file->GetGeometry().Points }, 0, file->GetArrays()[array].Type },
+FileSamples::FileSamples(const ArrayStep& of, ChunkCache& cache, bool scattered)
+  : FileSamples(of, { { bricks::Index3(0), of.File->GetGeometry().Points }, 0, of.Get().Type },
       cache, scattered)
 {
 }
@@ -71,7 +66,7 @@ bricks::Box FileSamples::GetCells() const
 
 void FileSamples::ReadSamples(const bricks::Box& points, std::byte* out) const
 {
-  const FileArray& array = this->File->GetArrays()[this->Array];
+  const FileArray& array = this->Of.Get();
   if (array.Components == 1)
   {
     this->ReadBox(points, out);
@@ -103,15 +98,16 @@ void FileSamples::ReadSamples(const bricks::Box& points, std::byte* out) const
 bool FileSamples::IsFill(const bricks::Box& points) const
 {
   const bricks::Index3& first = this->Read.Samples.Min;
-  return this->File->IsFill(this->Array, this->Step, { points.Min + first, points.Max + first });
+  return this->Of.File->IsFill(
+    this->Of.Array, this->Of.Step, { points.Min + first, points.Max + first });
 }
 
 void FileSamples::ReadBox(const bricks::Box& points, std::byte* out) const
 {
   const bricks::Index3& first = this->Read.Samples.Min;
   const bricks::Box box{ points.Min + first, points.Max + first };
-  this->Scattered ? this->Cache.ReadScattered(this->File, this->Array, this->Step, box, out)
-                  : this->Cache.ReadBox(this->File, this->Array, this->Step, box, out);
+  this->Scattered ? this->Cache.ReadScattered(this->Of, box, out)
+                  : this->Cache.ReadBox(this->Of, box, out);
 }
 
 } // namespace vol

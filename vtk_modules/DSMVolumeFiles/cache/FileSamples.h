@@ -27,11 +27,9 @@ public:
   };
 
   /// `scattered`: boxes are read here and there, rather than one beside the other.
-  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step, const Part& part,
-    ChunkCache& cache, bool scattered = false);
+  FileSamples(const ArrayStep& of, const Part& part, ChunkCache& cache, bool scattered = false);
   /// All samples of an array on points that has one component.
-  FileSamples(std::shared_ptr<const VolumeFile> file, std::size_t array, int step,
-    ChunkCache& cache, bool scattered = false);
+  FileSamples(const ArrayStep& of, ChunkCache& cache, bool scattered = false);
 
   bricks::Box GetCells() const override;
   void ReadSamples(const bricks::Box& points, std::byte* out) const override;
@@ -40,9 +38,7 @@ public:
 private:
   void ReadBox(const bricks::Box& points, std::byte* out) const;
 
-  std::shared_ptr<const VolumeFile> File;
-  std::size_t Array;
-  int Step;
+  ArrayStep Of;
   Part Read;
   ChunkCache& Cache;
   bool Scattered;

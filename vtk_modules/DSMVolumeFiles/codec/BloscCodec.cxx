@@ -9,8 +9,6 @@
 namespace vol
 {
 
-Codec MakeBloscCodec();
-
 #ifdef DSM_HAS_BLOSC
 namespace
 {

@@ -7,9 +7,6 @@
 namespace vol
 {
 
-Codec MakeCrc32cCodec();
-Codec MakeFletcher32Codec();
-
 namespace
 {
 

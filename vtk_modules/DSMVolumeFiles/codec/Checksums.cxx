@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 namespace vol
 {
@@ -78,32 +79,26 @@ std::uint32_t GetLookup3(const std::byte* bytes, std::size_t count)
     b += getWord(at + 4);
     c += getWord(at + 8);
   };
+  const auto turn = [&] { std::tie(a, b, c) = std::make_tuple(b, c, a); };
   for (; count - at > 12; at += 12)
   {
     addWords();
-    a = (a - c) ^ rotate(c, 4);
-    c += b;
-    b = (b - a) ^ rotate(a, 6);
-    a += c;
-    c = (c - b) ^ rotate(b, 8);
-    b += a;
-    a = (a - c) ^ rotate(c, 16);
-    c += b;
-    b = (b - a) ^ rotate(a, 19);
-    a += c;
-    c = (c - b) ^ rotate(b, 4);
-    b += a;
+    for (const int bits : { 4, 6, 8, 16, 19, 4 })
+    {
+      a = (a - c) ^ rotate(c, bits);
+      c += b;
+      turn();
+    }
   }
   if (at < count)
   {
     addWords();
-    c = (c ^ b) - rotate(b, 14);
-    a = (a ^ c) - rotate(c, 11);
-    b = (b ^ a) - rotate(a, 25);
-    c = (c ^ b) - rotate(b, 16);
-    a = (a ^ c) - rotate(c, 4);
-    b = (b ^ a) - rotate(a, 14);
-    c = (c ^ b) - rotate(b, 24);
+    for (const int bits : { 14, 11, 25, 16, 4, 14, 24 })
+    {
+      c = (c ^ b) - rotate(b, bits);
+      turn();
+    }
+    return b; // that of the last turn
   }
   return c;
 }

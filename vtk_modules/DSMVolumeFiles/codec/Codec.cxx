@@ -7,29 +7,11 @@
 namespace vol
 {
 
-// One line for each file; a static library keeps what is named here.
-Codec MakeAsTypeCodec();
-Codec MakeBloscCodec();
-Codec MakeBzip2Codec();
-Codec MakeCrc32cCodec();
-Codec MakeDeflateCodec();
-Codec MakeDeltaCodec();
-Codec MakeFixedScaleOffsetCodec();
-Codec MakeFletcher32Codec();
-Codec MakeHdfLz4Codec();
-Codec MakeLz4Codec();
-Codec MakeLzmaCodec();
-Codec MakeRoundedCodec();
-Codec MakeShuffleCodec();
-Codec MakeSwapCodec();
-Codec MakeZstdCodec();
-
 const std::vector<Codec>& GetCodecs()
 {
-  static const std::vector<Codec> codecs{ MakeSwapCodec(), MakeShuffleCodec(), MakeDeflateCodec(),
-    MakeBloscCodec(), MakeZstdCodec(), MakeFletcher32Codec(), MakeCrc32cCodec(), MakeBzip2Codec(),
-    MakeLz4Codec(), MakeHdfLz4Codec(), MakeLzmaCodec(), MakeRoundedCodec(), MakeAsTypeCodec(),
-    MakeDeltaCodec(), MakeFixedScaleOffsetCodec() };
+#define VOL_MAKE_CODEC(name) Make##name##Codec(),
+  static const std::vector<Codec> codecs{ VOL_CODECS(VOL_MAKE_CODEC) };
+#undef VOL_MAKE_CODEC
   return codecs;
 }
 

@@ -37,8 +37,8 @@ struct CodecParameters
   std::vector<std::uint64_t> Numbers = {};
 };
 
-/// A way to encode the bytes of a chunk. Each has a file of its own (ZstdCodec.cxx, ...) and a line in Codec.cxx; nothing
-/// else lists them. The functions are for any thread.
+/// A way to encode the bytes of a chunk. Each has a file of its own (ZstdCodec.cxx, ...) and a line in VOL_CODECS;
+/// nothing else lists them. The functions are for any thread.
 struct Codec
 {
   std::string_view Name;
@@ -74,6 +74,15 @@ struct Codec
   /// Returns what AddHalo has added, or nothing.
   std::optional<ByteBuffer> (*FindHalo)(const ByteBuffer& stored) = nullptr;
 };
+
+/// All codecs: a static library keeps what is named here. `codec(Name)` stands for MakeNameCodec.
+#define VOL_CODECS(codec)                                                                          \
+  codec(Swap) codec(Shuffle) codec(Deflate) codec(Blosc) codec(Zstd) codec(Fletcher32)             \
+    codec(Crc32c) codec(Bzip2) codec(Lz4) codec(HdfLz4) codec(Lzma) codec(Rounded) codec(AsType)   \
+      codec(Delta) codec(FixedScaleOffset)
+#define VOL_DECLARE_CODEC(name) Codec Make##name##Codec();
+VOL_CODECS(VOL_DECLARE_CODEC)
+#undef VOL_DECLARE_CODEC
 
 /// All codecs, those included that this build lacks a library for.
 const std::vector<Codec>& GetCodecs();

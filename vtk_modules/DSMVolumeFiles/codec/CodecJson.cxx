@@ -41,6 +41,20 @@ const Json& CodecJson::Find(const Json& configuration, const char* name)
   return found == configuration.end() ? none : *found;
 }
 
+std::optional<ElementType> CodecJson::FindType(const std::string& text)
+{
+  const bool hasOrder =
+    !text.empty() && std::string_view("<>|=").find(text[0]) != std::string::npos;
+  for (const TypeName& one : TypeNames)
+  {
+    if (text == one.Name || text.substr(hasOrder ? 1 : 0) == one.Code)
+    {
+      return ElementType{ one.Type, text[0] == '>' && bricks::GetBytes(one.Type) > 1 };
+    }
+  }
+  return std::nullopt;
+}
+
 std::int64_t CodecJson::GetInteger(const Json& configuration, const char* name, std::int64_t usual,
   std::int64_t least, std::int64_t most)
 {
@@ -75,14 +89,9 @@ ElementType CodecJson::GetType(
     return usual;
   }
   const std::string text = found.is_string() ? found.get<std::string>() : std::string();
-  const bool hasOrder =
-    !text.empty() && std::string_view("<>|=").find(text[0]) != std::string::npos;
-  for (const TypeName& one : TypeNames)
+  if (const auto known = FindType(text))
   {
-    if (text == one.Name || text.substr(hasOrder ? 1 : 0) == one.Code)
-    {
-      return { one.Type, text[0] == '>' && bricks::GetBytes(one.Type) > 1 };
-    }
+    return *known;
   }
   throw dsm::Error("has " + (found.is_string() ? Quote(text) : std::string("no text")) +
     " as its '" + name + "', which is not a supported scalar type.");

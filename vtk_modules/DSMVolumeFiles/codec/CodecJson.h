@@ -7,14 +7,19 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
-#include <string_view>
+#include <optional>
+#include <string>
 
 /// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec 'x' ".
 namespace vol::CodecJson
 {
 
-/// Null where there is none.
+/// Returns a member of an object; null where there is none, or what should have it is no object.
 const nlohmann::json& Find(const nlohmann::json& configuration, const char* name);
+
+/// Returns the type that NumPy ("<f4") or Zarr 3 ("float32") calls so; nothing for those that bricks::ScalarType does
+/// not have.
+std::optional<ElementType> FindType(const std::string& text);
 
 /// Returns `usual` where there is none, or null. Throws where it is not an integer in [least, most].
 std::int64_t GetInteger(const nlohmann::json& configuration, const char* name, std::int64_t usual,

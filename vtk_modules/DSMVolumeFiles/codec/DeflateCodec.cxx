@@ -2,6 +2,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/codec/Codec.h"
 #include "DSMVolumeFiles/codec/CodecBytes.h"
+#include "DSMVolumeFiles/codec/StreamDecoder.h"
 
 #include <limits>
 #include <memory>
@@ -17,13 +18,8 @@
 namespace vol
 {
 
-Codec MakeDeflateCodec();
-
 namespace
 {
-
-/// At least two bits are spent on 258 bytes.
-constexpr std::uint64_t MostGrowth = 1032;
 
 #ifdef DSM_HAS_ZLIB
 using namespace CodecBytes;
@@ -39,7 +35,7 @@ ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
   }
   const bool gzip =
     stored.size() > 1 && stored[0] == std::byte(0x1f) && stored[1] == std::byte(0x8b);
-  ByteBuffer bytes(GetRoom(stored, MostGrowth, most));
+  ByteBuffer bytes(GetRoom(stored, StreamDecoder::GetMostGrowth(StreamEncoding::Deflate), most));
   std::size_t used = 0;
   std::size_t count = 0;
   const libdeflate_result result =
@@ -55,27 +51,12 @@ ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 #else
 ByteBuffer Decode(ByteBuffer stored, const CodecParameters&, std::size_t most)
 {
-  constexpr int zlibOrGzip = 15 + 32;
-  const auto toCount = [](std::size_t size)
-  { return static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max())); };
-  z_stream stream{};
-  ByteBuffer bytes(GetRoom(stored, MostGrowth, most));
-  stream.next_in = reinterpret_cast<Bytef*>(stored.data());
-  stream.avail_in = toCount(stored.size());
-  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
-  stream.avail_out = toCount(bytes.size());
-  if (inflateInit2(&stream, zlibOrGzip) != Z_OK)
-  {
-    throw std::bad_alloc();
-  }
-  const int state = inflate(&stream, Z_FINISH);
-  bytes.resize(stream.total_out);
-  inflateEnd(&stream);
-  if (state != Z_STREAM_END)
+  auto bytes = StreamDecoder::DecodeWhole(StreamEncoding::Deflate, stored, most);
+  if (!bytes)
   {
     throw dsm::Error("its deflate stream is damaged");
   }
-  return bytes;
+  return std::move(*bytes);
 }
 #endif
 
@@ -122,7 +103,7 @@ Codec MakeDeflateCodec()
   Codec codec{ "deflate", { "zlib", "gzip" } };
   codec.HdfFilters = { 1 };
   codec.IsCompressor = true;
-  codec.MostGrowth = MostGrowth;
+  codec.MostGrowth = StreamDecoder::GetMostGrowth(StreamEncoding::Deflate);
 #ifdef DSM_HAS_ZLIB
   codec.Decode = &Decode;
   codec.Encode = &Encode;

@@ -13,9 +13,6 @@
 namespace vol
 {
 
-Codec MakeHdfLz4Codec();
-Codec MakeLz4Codec();
-
 namespace
 {
 

@@ -15,8 +15,6 @@
 namespace vol
 {
 
-Codec MakeLzmaCodec();
-
 namespace
 {
 

@@ -13,10 +13,6 @@
 namespace vol
 {
 
-Codec MakeAsTypeCodec();
-Codec MakeDeltaCodec();
-Codec MakeFixedScaleOffsetCodec();
-
 namespace
 {
 

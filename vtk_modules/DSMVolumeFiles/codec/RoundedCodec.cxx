@@ -4,8 +4,6 @@
 namespace vol
 {
 
-Codec MakeRoundedCodec();
-
 /// Values whose last bits were rounded off before they were stored: there is nothing to undo.
 Codec MakeRoundedCodec()
 {

@@ -8,8 +8,6 @@
 namespace vol
 {
 
-Codec MakeShuffleCodec();
-
 namespace
 {
 

@@ -2,11 +2,13 @@
 #include "DSMVolumeFiles/codec/StreamDecoder.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/codec/CodecBytes.h"
 
 #include <algorithm>
 #include <limits>
 #include <new>
 #include <string>
+#include <utility>
 
 #ifdef DSM_HAS_ZLIB
 #include <zlib.h>
@@ -29,97 +31,88 @@ namespace
 }
 
 #ifdef DSM_HAS_ZLIB
-class DeflateDecoder final : public StreamDecoder
+/// Of zlib or gzip.
+struct Deflate
 {
-public:
-  DeflateDecoder()
+  using Stream = z_stream;
+  static constexpr int Ended = Z_STREAM_END;
+  static constexpr int NoMemory = Z_MEM_ERROR;
+
+  static int Begin(Stream& stream)
   {
     constexpr int zlibOrGzip = 15 + 32;
-    if (inflateInit2(&this->Stream, zlibOrGzip) != Z_OK)
-    {
-      throw std::bad_alloc();
-    }
+    return inflateInit2(&stream, zlibOrGzip);
   }
-  ~DeflateDecoder() override { inflateEnd(&this->Stream); }
-
-  Step Decode(
-    const std::byte* in, std::size_t inBytes, std::byte* out, std::size_t outBytes) override
+  static int Run(Stream& stream)
   {
-    if (this->HasEnded)
-    {
-      inflateReset(&this->Stream);
-    }
-    this->Stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(in));
-    this->Stream.avail_in = ToCount(inBytes);
-    this->Stream.next_out = reinterpret_cast<Bytef*>(out);
-    this->Stream.avail_out = ToCount(outBytes);
-    const int state = inflate(&this->Stream, Z_NO_FLUSH);
-    this->HasEnded = state == Z_STREAM_END;
-    if (state == Z_MEM_ERROR)
-    {
-      throw std::bad_alloc();
-    }
-    if (state != Z_OK && state != Z_BUF_ERROR && !this->HasEnded)
-    {
-      throw dsm::Error("its compressed values are damaged");
-    }
-    return { ToCount(inBytes) - this->Stream.avail_in, ToCount(outBytes) - this->Stream.avail_out,
-      this->HasEnded };
+    const int state = inflate(&stream, Z_NO_FLUSH);
+    return state == Z_BUF_ERROR ? Z_OK : state;
   }
-
-private:
-  z_stream Stream{};
-  bool HasEnded = false;
+  static void End(Stream& stream) { inflateEnd(&stream); }
 };
 #endif
 
 #ifdef DSM_HAS_BZIP2
-class Bzip2Decoder final : public StreamDecoder
+struct Bzip2
+{
+  using Stream = bz_stream;
+  static constexpr int Ended = BZ_STREAM_END;
+  static constexpr int NoMemory = BZ_MEM_ERROR;
+
+  static int Begin(Stream& stream) { return BZ2_bzDecompressInit(&stream, 0, 0); }
+  static int Run(Stream& stream) { return BZ2_bzDecompress(&stream); }
+  static void End(Stream& stream) { BZ2_bzDecompressEnd(&stream); }
+};
+#endif
+
+/// The streams of both libraries have the same members, and 0 means that there is no error.
+template <class Library>
+class DecoderOf final : public StreamDecoder
 {
 public:
-  Bzip2Decoder() { this->Begin(); }
-  ~Bzip2Decoder() override { BZ2_bzDecompressEnd(&this->Stream); }
+  DecoderOf() { this->Begin(); }
+  ~DecoderOf() override { Library::End(this->Stream); }
 
-  Step Decode(
+  std::optional<Step> Decode(
     const std::byte* in, std::size_t inBytes, std::byte* out, std::size_t outBytes) override
   {
     if (this->HasEnded)
     {
-      BZ2_bzDecompressEnd(&this->Stream);
+      Library::End(this->Stream);
       this->Begin();
     }
-    this->Stream.next_in = const_cast<char*>(reinterpret_cast<const char*>(in));
+    this->Stream.next_in =
+      reinterpret_cast<decltype(this->Stream.next_in)>(const_cast<std::byte*>(in));
     this->Stream.avail_in = ToCount(inBytes);
-    this->Stream.next_out = reinterpret_cast<char*>(out);
+    this->Stream.next_out = reinterpret_cast<decltype(this->Stream.next_out)>(out);
     this->Stream.avail_out = ToCount(outBytes);
-    const int state = BZ2_bzDecompress(&this->Stream);
-    this->HasEnded = state == BZ_STREAM_END;
-    if (state == BZ_MEM_ERROR)
+    const int state = Library::Run(this->Stream);
+    this->HasEnded = state == Library::Ended;
+    if (state == Library::NoMemory)
     {
       throw std::bad_alloc();
     }
-    if (state != BZ_OK && !this->HasEnded)
+    if (state != 0 && !this->HasEnded)
     {
-      throw dsm::Error("its compressed values are damaged");
+      return std::nullopt;
     }
-    return { ToCount(inBytes) - this->Stream.avail_in, ToCount(outBytes) - this->Stream.avail_out,
-      this->HasEnded };
+    return Step{ ToCount(inBytes) - this->Stream.avail_in,
+      ToCount(outBytes) - this->Stream.avail_out, this->HasEnded };
   }
 
 private:
   void Begin()
   {
     this->Stream = {};
-    if (BZ2_bzDecompressInit(&this->Stream, 0, 0) != BZ_OK)
+    if (Library::Begin(this->Stream) != 0)
     {
       throw std::bad_alloc();
     }
   }
 
-  bz_stream Stream{};
+  typename Library::Stream Stream{};
   bool HasEnded = false;
 };
-#endif
 
 [[noreturn, maybe_unused]] void RefuseLack(const std::string& what, const std::string& package)
 {
@@ -136,10 +129,21 @@ std::uint64_t StreamDecoder::GetMostGrowth(StreamEncoding encoding)
     case StreamEncoding::Deflate:
       return 1032; // at least two bits are spent on 258 bytes
     case StreamEncoding::Bzip2:
-      return std::uint64_t(1) << 22; // 46 MB of one value are a block of some 40 bytes
+      /// A block of 900,000 bytes, each five of which stand for up to 259, takes more than 32 bytes.
+      return std::uint64_t(1) << 21;
     default:
       return 1;
   }
+}
+
+std::optional<ByteBuffer> StreamDecoder::DecodeWhole(
+  StreamEncoding encoding, const ByteBuffer& stored, std::size_t most)
+{
+  ByteBuffer bytes(CodecBytes::GetRoom(stored, GetMostGrowth(encoding), most));
+  const std::optional<Step> step =
+    Make(encoding)->Decode(stored.data(), stored.size(), bytes.data(), bytes.size());
+  bytes.resize(step ? step->Written : 0);
+  return step && step->Ended ? std::optional<ByteBuffer>(std::move(bytes)) : std::nullopt;
 }
 
 std::unique_ptr<StreamDecoder> StreamDecoder::Make(StreamEncoding encoding)
@@ -147,13 +151,13 @@ std::unique_ptr<StreamDecoder> StreamDecoder::Make(StreamEncoding encoding)
   if (encoding == StreamEncoding::Bzip2)
   {
 #ifdef DSM_HAS_BZIP2
-    return std::make_unique<Bzip2Decoder>();
+    return std::make_unique<DecoderOf<Bzip2>>();
 #else
     RefuseLack("bzip2", "libbz2-dev");
 #endif
   }
 #ifdef DSM_HAS_ZLIB
-  return std::make_unique<DeflateDecoder>();
+  return std::make_unique<DecoderOf<Deflate>>();
 #else
   RefuseLack("deflate", "zlib1g-dev");
 #endif

@@ -2,9 +2,12 @@
 #ifndef vol_StreamDecoder_h
 #define vol_StreamDecoder_h
 
+#include "DSMVolumeFiles/base/ByteBuffer.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace vol
 {
@@ -31,10 +34,13 @@ public:
     std::size_t Written;
     bool Ended; ///< the stream, with its checksum; the next call begins another one
   };
-  /// Unpacks as much of `in` as `out` has room for. Throws dsm::Error, which begins with "its", when the stream is
-  /// damaged.
-  virtual Step Decode(
+  /// Unpacks as much of `in` as `out` has room for. Returns nothing when the stream is damaged.
+  virtual std::optional<Step> Decode(
     const std::byte* in, std::size_t inBytes, std::byte* out, std::size_t outBytes) = 0;
+
+  /// Unpacks a single stream to at most so many bytes. Returns nothing when it is damaged, or has more.
+  static std::optional<ByteBuffer> DecodeWhole(
+    StreamEncoding encoding, const ByteBuffer& stored, std::size_t most);
 
   /// Upper bound for the ratio of unpacked to packed bytes.
   static std::uint64_t GetMostGrowth(StreamEncoding encoding);

@@ -7,8 +7,6 @@
 namespace vol
 {
 
-Codec MakeSwapCodec();
-
 namespace
 {
 

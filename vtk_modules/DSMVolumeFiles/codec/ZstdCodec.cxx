@@ -13,8 +13,6 @@
 namespace vol
 {
 
-Codec MakeZstdCodec();
-
 namespace
 {
 

@@ -3,7 +3,6 @@
 
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
-#include "DSMVolumeFiles/format/HeaderText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +40,7 @@ std::optional<double> FindMeters(const std::string& unit)
       return meters;
     }
   }
-  std::string name = HeaderText::ToLower(unit);
+  std::string name = ToLower(unit);
   const auto known = units.find(name);
   if (known != units.end())
   {
@@ -70,7 +69,7 @@ bool IsNoLength(const std::string& unit)
   static const std::set<std::string> others = { "deg", "radian", "radians", "rad", "pa", "hpa",
     "kpa", "mbar", "mb", "millibar", "millibars", "bar", "dbar", "decibar", "1", "level", "layer",
     "sigma_level", "k" };
-  const std::string name = HeaderText::ToLower(unit);
+  const std::string name = ToLower(unit);
   return name.rfind("degree", 0) == 0 || others.count(name) > 0;
 }
 
@@ -160,9 +159,9 @@ void Even(AxisNote& note)
 
 std::string AxisNote::GetType() const
 {
-  const std::string name = HeaderText::ToLower(this->Name);
-  const std::string type = HeaderText::ToLower(this->Type);
-  const bool isSince = HeaderText::ToLower(this->Unit).find(" since ") != std::string::npos;
+  const std::string name = ToLower(this->Name);
+  const std::string type = ToLower(this->Type);
+  const bool isSince = ToLower(this->Unit).find(" since ") != std::string::npos;
   return !type.empty()                          ? type
     : name == "t" || name == "time" || isSince  ? "time"
     : name == "c" || name == "channel"          ? "channel"
@@ -175,13 +174,13 @@ std::optional<int> AxisNote::FindSpaceAxis() const
   static const std::map<std::string, int> names = { { "x", 0 }, { "lon", 0 }, { "longitude", 0 },
     { "easting", 0 }, { "y", 1 }, { "lat", 1 }, { "latitude", 1 }, { "northing", 1 }, { "z", 2 },
     { "lev", 2 }, { "level", 2 }, { "plev", 2 }, { "depth", 2 }, { "altitude", 2 } };
-  const auto known = names.find(HeaderText::ToLower(this->Name));
+  const auto known = names.find(ToLower(this->Name));
   if (known != names.end())
   {
     return known->second;
   }
   // degree_east, degrees_E, degreesE and so on.
-  const std::string unit = HeaderText::ToLower(this->Unit);
+  const std::string unit = ToLower(this->Unit);
   const std::size_t side = unit.rfind("degree", 0) == 0
     ? unit.find_first_not_of("s_", std::char_traits<char>::length("degree"))
     : std::string::npos;
@@ -236,21 +235,22 @@ void PlaceAxes(const std::string& path, const std::array<const AxisNote*, 3>& no
   for (int axis = 0; axis < 3; ++axis)
   {
     AxisNote& note = own[static_cast<std::size_t>(axis)];
-    const auto isFinite = [](double number) { return std::isfinite(number); };
+    const auto refuse = [&](const std::string& why)
+    {
+      throw FileError(path,
+        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
+          ") that " + why +
+          ". Enter Spacing (and Origin) of the reader to place the samples yourself.");
+    };
     if (!Ascend(note.Coordinates) &&
       !Ascend({ note.Coordinates.rbegin(), note.Coordinates.rend() }))
     {
-      throw FileError(path,
-        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
-          ") that neither rise nor fall everywhere. Enter Spacing (and Origin) of the reader to "
-          "place the samples yourself.");
+      refuse("neither rise nor fall everywhere");
     }
-    if (!std::all_of(note.Coordinates.begin(), note.Coordinates.end(), isFinite))
+    if (!std::all_of(note.Coordinates.begin(), note.Coordinates.end(),
+          [](double number) { return std::isfinite(number); }))
     {
-      throw FileError(path,
-        "has coordinates along " + std::string(1, "xyz"[axis]) + " (" + Quote(note.Name) +
-          ") that are not finite. Enter Spacing (and Origin) of the reader to place the samples "
-          "yourself.");
+      refuse("are not finite");
     }
     Even(note);
     geometry.Origin[axis] = note.Origin;
@@ -300,7 +300,7 @@ void TakeUpDown(const std::string& positive, AxisNote& note)
   {
     note.Name = "Z";
   }
-  if (HeaderText::ToLower(positive) == "down")
+  if (ToLower(positive) == "down")
   {
     Scale(-1.0, note);
   }

@@ -168,40 +168,11 @@ std::uint64_t PackedValues::GetStamp() const
   return hash.Get();
 }
 
-double PackedValues::ToNumber(const std::byte* stored) const
+template <class Visit>
+decltype(auto) PackedValues::WithLoad(const std::byte* from, const Visit& visit) const
 {
   return bricks::Dispatch(this->Stored,
-    [&](auto number)
-    {
-      std::memcpy(&number, stored, sizeof(number));
-      if constexpr (std::is_same_v<decltype(number), std::uint16_t>)
-      {
-        return this->IsHalf ? static_cast<double>(FromHalf(number)) : static_cast<double>(number);
-      }
-      else
-      {
-        return static_cast<double>(number);
-      }
-    });
-}
-
-void PackedValues::Unpack(const std::byte* from, std::size_t count, std::byte* out) const
-{
-  const auto toValue = [this](auto number)
-  { return this->Scale * static_cast<double>(number) + this->Offset; };
-  if (this->IsHalf)
-  {
-    const auto load = [from](std::size_t index)
-    {
-      std::uint16_t half;
-      std::memcpy(&half, from + index * sizeof(half), sizeof(half));
-      return FromHalf(half);
-    };
-    UnpackAll<float>(count, out, this->Valid, load, toValue);
-    return;
-  }
-  bricks::Dispatch(this->Stored,
-    [&](auto zero)
+    [&](auto zero) -> decltype(auto)
     {
       const auto load = [from, zero](std::size_t index)
       {
@@ -209,8 +180,32 @@ void PackedValues::Unpack(const std::byte* from, std::size_t count, std::byte* o
         std::memcpy(&number, from + index * sizeof(number), sizeof(number));
         return number;
       };
-      this->GetType() == Type::Float32 ? UnpackAll<float>(count, out, this->Valid, load, toValue)
-                                       : UnpackAll<double>(count, out, this->Valid, load, toValue);
+      if constexpr (std::is_same_v<decltype(zero), std::uint16_t>)
+      {
+        if (this->IsHalf)
+        {
+          return visit([&load](std::size_t index) { return FromHalf(load(index)); });
+        }
+      }
+      return visit(load);
+    });
+}
+
+double PackedValues::ToNumber(const std::byte* stored) const
+{
+  return this->WithLoad(stored, [](const auto& load) { return static_cast<double>(load(0)); });
+}
+
+void PackedValues::Unpack(const std::byte* from, std::size_t count, std::byte* out) const
+{
+  const auto toValue = [this](auto number)
+  { return this->Scale * static_cast<double>(number) + this->Offset; };
+  const bool isSingle = this->GetType() == Type::Float32;
+  this->WithLoad(from,
+    [&](const auto& load)
+    {
+      isSingle ? UnpackAll<float>(count, out, this->Valid, load, toValue)
+               : UnpackAll<double>(count, out, this->Valid, load, toValue);
     });
 }
 

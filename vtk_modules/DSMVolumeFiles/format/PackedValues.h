@@ -55,6 +55,10 @@ public:
   static std::vector<std::byte> ToHalf(float value);
 
 private:
+  /// Calls `visit(load)`, where `load(index)` returns a number as it is stored; halves as floats.
+  template <class Visit>
+  decltype(auto) WithLoad(const std::byte* from, const Visit& visit) const;
+
   bricks::ScalarType Stored = bricks::ScalarType::UInt8;
   bool IsHalf = false;
   double Scale = 1.0;

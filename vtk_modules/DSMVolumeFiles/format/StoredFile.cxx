@@ -94,20 +94,20 @@ void StoredFile::ReadStored(
     const bool inRows =
       storage.StoredSamples != bricks::Index3(0) || (!isAll && allBytes > MostChunkBytesTogether);
     const auto rows =
-      inRows ? this->FindPieces(array, *place, whole, box) : std::vector<PositionedFile::Piece>{};
+      inRows ? this->FindPieces(array, *place, whole, box) : std::vector<ByteSource::Piece>{};
     if (!rows.empty())
     {
-      ReadPieces(storage, *place, rows, out, count * sampleBytes);
+      this->ReadPieces(array, *place, rows, out, count * sampleBytes);
       return;
     }
     if (storage.Codec.IsPlain() && isAll && place->Bytes == allBytes)
     {
-      place->File->Read(place->Offset, out, allBytes);
+      place->File->Read({ { place->Offset, allBytes } }, out);
       return;
     }
     this->CheckStored(array, *place, allBytes);
     ByteBuffer bytes(place->Bytes);
-    place->File->Read(place->Offset, bytes.data(), bytes.size());
+    place->File->Read({ { place->Offset, bytes.size() } }, bytes.data());
     if (isAll)
     {
       storage.Codec.Decode(std::move(bytes), place->SkippedSteps, out, allBytes);
@@ -127,7 +127,7 @@ void StoredFile::ReadStored(
   }
   catch (const dsm::Error& error)
   {
-    throw FileError({ place->File->GetPath(), what.Name, whole }, error);
+    throw FileError(this->NamePlace(array, *place, chunk, whole), error);
   }
 }
 
@@ -159,47 +159,78 @@ void StoredFile::CheckStored(std::size_t array, const Place& place, std::size_t 
   }
 }
 
-std::vector<PositionedFile::Piece> StoredFile::FindPieces(
+FileError::Place StoredFile::NamePlace(std::size_t array, const Place& place,
+  const bricks::Index3& chunk, const bricks::Index3& whole) const
+{
+  // Values in one piece have no chunks but those that are shown.
+  const bool isOne = this->Storages[array].StoredSamples == this->Arrays[array].Grid.Samples;
+  return { place.File->GetPath(), this->Arrays[array].Name, isOne ? chunk : whole };
+}
+
+std::vector<ByteSource::Piece> StoredFile::FindPieces(
   std::size_t array, const Place& place, const bricks::Index3& whole, const bricks::Box& part) const
 {
   const ChunkStorage& storage = this->Storages[array];
-  const std::size_t sampleBytes = this->GetStoredBytes(array);
+  const auto planes =
+    static_cast<std::size_t>(storage.ComponentsApart ? this->Arrays[array].Components : 1);
+  const std::size_t sampleBytes = this->GetStoredBytes(array) / planes;
   const bricks::Box stored = this->GetStoredBox(array, whole);
   const bricks::Index3 size = stored.GetSize();
-  std::vector<PositionedFile::Piece> pieces;
-  const std::uint64_t sliceBytes = static_cast<std::uint64_t>(stored.GetCount()) * sampleBytes;
+  std::vector<ByteSource::Piece> pieces;
+  const std::uint64_t planeBytes = static_cast<std::uint64_t>(stored.GetCount()) * sampleBytes;
+  const std::uint64_t sliceBytes = planeBytes * planes;
   if (!storage.Codec.KeepsPlaces() || storage.Order != FastestX ||
     place.Bytes != sliceBytes * storage.Slices)
   {
     return pieces;
   }
   const std::uint64_t first = place.Offset + place.Slice * sliceBytes;
-  const bricks::Index3 rows = part.GetSize();
-  pieces.reserve(static_cast<std::size_t>(rows.y * rows.z));
-  for (std::int64_t z = part.Min.z - stored.Min.z; z < part.Max.z - stored.Min.z; ++z)
+  const bricks::Box rows{ part.Min - stored.Min, part.Max - stored.Min };
+  // Whole rows follow one another.
+  const std::int64_t together = part.GetSize().x == size.x ? part.GetSize().y : 1;
+  const auto bytes = static_cast<std::size_t>(part.GetSize().x * together) * sampleBytes;
+  for (std::size_t plane = 0; plane < planes; ++plane)
   {
-    for (std::int64_t y = part.Min.y - stored.Min.y; y < part.Max.y - stored.Min.y; ++y)
+    for (std::int64_t z = rows.Min.z; z < rows.Max.z; ++z)
     {
-      const auto before =
-        static_cast<std::uint64_t>((z * size.y + y) * size.x + part.Min.x - stored.Min.x);
-      pieces.push_back(
-        { first + before * sampleBytes, static_cast<std::size_t>(rows.x) * sampleBytes });
+      for (std::int64_t y = rows.Min.y; y < rows.Max.y; y += together)
+      {
+        const auto before = static_cast<std::uint64_t>((z * size.y + y) * size.x + rows.Min.x);
+        pieces.push_back({ first + plane * planeBytes + before * sampleBytes, bytes });
+      }
     }
   }
   return pieces;
 }
 
-void StoredFile::ReadPieces(const ChunkStorage& storage, const Place& place,
-  const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes)
+void StoredFile::ReadPieces(std::size_t array, const Place& place,
+  const std::vector<ByteSource::Piece>& pieces, std::byte* out, std::size_t bytes) const
 {
-  if (storage.Codec.IsPlain())
+  const ChunkStorage& storage = this->Storages[array];
+  if (storage.Codec.IsPlain() && !storage.ComponentsApart)
   {
     place.File->Read(pieces, out);
     return;
   }
   ByteBuffer stored(bytes);
   place.File->Read(pieces, stored.data());
-  storage.Codec.Decode(std::move(stored), place.SkippedSteps, out, bytes);
+  if (!storage.ComponentsApart)
+  {
+    storage.Codec.Decode(std::move(stored), place.SkippedSteps, out, bytes);
+    return;
+  }
+  ByteBuffer apart(bytes);
+  storage.Codec.Decode(std::move(stored), place.SkippedSteps, apart.data(), bytes);
+  const std::size_t width = bricks::GetBytes(storage.Packed.GetStored());
+  const std::size_t sampleBytes = this->GetStoredBytes(array);
+  const std::byte* from = apart.data();
+  for (std::size_t component = 0; component < sampleBytes; component += width)
+  {
+    for (std::size_t at = component; at < bytes; at += sampleBytes, from += width)
+    {
+      std::copy_n(from, width, out + at);
+    }
+  }
 }
 
 bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chunk,
@@ -208,7 +239,7 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
   const bricks::Index3 whole = this->FindStored(array, chunk);
   const std::optional<Place> place = this->FindChunk(array, step, whole);
   const auto pieces =
-    place ? this->FindPieces(array, *place, whole, part) : std::vector<PositionedFile::Piece>{};
+    place ? this->FindPieces(array, *place, whole, part) : std::vector<ByteSource::Piece>{};
   if (pieces.empty())
   {
     return false;
@@ -219,12 +250,12 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
     {
       try
       {
-        ReadPieces(this->Storages[array], *place, pieces, to,
-          static_cast<std::size_t>(count) * this->GetStoredBytes(array));
+        this->ReadPieces(
+          array, *place, pieces, to, static_cast<std::size_t>(count) * this->GetStoredBytes(array));
       }
       catch (const dsm::Error& error)
       {
-        throw FileError({ place->File->GetPath(), this->Arrays[array].Name, whole }, error);
+        throw FileError(this->NamePlace(array, *place, chunk, whole), error);
       }
     });
   return true;
@@ -260,7 +291,7 @@ bool StoredFile::ReadWithHalo(
     halo.resize(static_cast<std::size_t>(all.GetCount() - box.GetCount()) * sampleBytes);
     samples.resize(storedBytes);
     ByteBuffer bytes(place->Bytes + behind);
-    place->File->Read(place->Offset, bytes.data(), bytes.size());
+    place->File->Read({ { place->Offset, bytes.size() } }, bytes.data());
     bool isThere = behind == 0 ||
       HaloRecord::Take(bytes.data() + place->Bytes, behind, what.Grid.GetNumber(chunk), halo);
     bytes.resize(place->Bytes);
@@ -292,28 +323,15 @@ bool StoredFile::ReadWithHalo(
 
 bool StoredFile::IsFill(std::size_t array, int step, const bricks::Box& box) const
 {
-  const bricks::Index3 edges = this->GetStoredGrid(array).ChunkSamples;
-  const bricks::Index3 first = box.Min / edges;
-  const bricks::Index3 last = (box.Max - bricks::Index3(1)) / edges;
-  for (std::int64_t z = first.z; z <= last.z; ++z)
-  {
-    for (std::int64_t y = first.y; y <= last.y; ++y)
-    {
-      for (std::int64_t x = first.x; x <= last.x; ++x)
-      {
-        if (!this->IsMissing(array, step, { x, y, z }))
-        {
-          return false;
-        }
-      }
-    }
-  }
-  return !box.IsEmpty();
+  bool isFill = !box.IsEmpty();
+  bricks::ForEachIndex(this->GetStoredGrid(array).GetChunks(box),
+    [&](const bricks::Index3& chunk) { isFill = isFill && this->IsMissing(array, step, chunk); });
+  return isFill;
 }
 
 void StoredFile::Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const
 {
-  std::map<std::shared_ptr<const PositionedFile>, std::vector<PositionedFile::Piece>> found;
+  std::map<std::shared_ptr<const ByteSource>, std::vector<ByteSource::Piece>> found;
   for (const auto& [chunk, part] : parts)
   {
     const bricks::Index3 whole = this->FindStored(array, chunk);

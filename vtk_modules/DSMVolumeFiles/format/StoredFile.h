@@ -4,7 +4,8 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMCore/base/FunctionRef.h"
-#include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/base/ByteSource.h"
+#include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/format/ChunkStorage.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 
@@ -35,7 +36,7 @@ protected:
   /// Place of the bytes of a chunk.
   struct Place
   {
-    std::shared_ptr<const PositionedFile> File;
+    std::shared_ptr<const ByteSource> File;
     std::uint64_t Offset = 0;
     std::size_t Bytes = 0;
     unsigned SkippedSteps = 0; ///< bits of the codec steps that were skipped
@@ -74,11 +75,14 @@ private:
   /// The samples of a chunk of the file, those beyond the volume's ends included where it has them.
   bricks::Box GetStoredBox(std::size_t array, const bricks::Index3& whole) const;
   /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
-  std::vector<PositionedFile::Piece> FindPieces(std::size_t array, const Place& place,
+  std::vector<ByteSource::Piece> FindPieces(std::size_t array, const Place& place,
     const bricks::Index3& whole, const bricks::Box& part) const;
   /// Reads pieces that have so many bytes in total.
-  static void ReadPieces(const ChunkStorage& storage, const Place& place,
-    const std::vector<PositionedFile::Piece>& pieces, std::byte* out, std::size_t bytes);
+  void ReadPieces(std::size_t array, const Place& place,
+    const std::vector<ByteSource::Piece>& pieces, std::byte* out, std::size_t bytes) const;
+  /// Where an error is, in a chunk of an array, which is `whole` of the file's.
+  FileError::Place NamePlace(std::size_t array, const Place& place, const bricks::Index3& chunk,
+    const bricks::Index3& whole) const;
 };
 
 } // namespace vol

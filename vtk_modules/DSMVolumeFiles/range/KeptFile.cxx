@@ -44,8 +44,7 @@ void RemoveUnused(const std::filesystem::path& folder)
 
 /// Returns the path prefix of files that are kept for an array, with the folder; empty if there is
 /// no folder.
-std::filesystem::path GetBeginning(
-  const VolumeFile& file, std::size_t array, int step, const std::string& kind)
+std::filesystem::path GetBeginning(const ArrayStep& of, const std::string& kind)
 {
   const std::filesystem::path folder = GetCacheFolder();
   if (folder.empty())
@@ -53,12 +52,12 @@ std::filesystem::path GetBeginning(
     return {};
   }
   std::error_code failure;
-  const VolumeFile::StepOrigin origin = file.GetOrigin(step);
+  const VolumeFile::StepOrigin origin = of.File->GetOrigin(of.Step);
   const std::string path = std::filesystem::absolute(origin.Path, failure).string();
-  const FileArray& kept = file.GetArrays()[array];
+  const FileArray& kept = of.Get();
   const bricks::Index3& samples = kept.Grid.Samples; // another level of detail has fewer
   const std::int64_t numbers[] = { static_cast<std::int64_t>(origin.Stamp),
-    static_cast<std::int64_t>(array), origin.Step, samples.x, samples.y, samples.z };
+    static_cast<std::int64_t>(of.Array), origin.Step, samples.x, samples.y, samples.z };
   bricks::ByteHash hash;
   hash.Add(path.data(), path.size());
   hash.Add(kept.Name.data(), kept.Name.size());
@@ -105,9 +104,8 @@ std::optional<bricks::Box> ReadBox(const std::string& text, const bricks::Box& w
 
 } // namespace
 
-KeptFile::KeptFile(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
-  const std::string& kind)
-  : Path(GetBeginning(file, array, step, kind).string())
+KeptFile::KeptFile(const ArrayStep& of, const bricks::Box& box, const std::string& kind)
+  : Path(GetBeginning(of, kind).string())
 {
   if (!this->Path.empty())
   {
@@ -115,13 +113,12 @@ KeptFile::KeptFile(const VolumeFile& file, std::size_t array, int step, const br
   }
 }
 
-std::vector<bricks::Box> KeptFile::FindBoxes(
-  const VolumeFile& file, std::size_t array, int step, const std::string& kind)
+std::vector<bricks::Box> KeptFile::FindBoxes(const ArrayStep& of, const std::string& kind)
 {
   std::vector<bricks::Box> boxes;
-  const std::filesystem::path beginning = GetBeginning(file, array, step, kind);
+  const std::filesystem::path beginning = GetBeginning(of, kind);
   const std::string name = beginning.filename().string();
-  const bricks::Box whole{ bricks::Index3(0), file.GetArrays()[array].Grid.Samples };
+  const bricks::Box whole{ bricks::Index3(0), of.Get().Grid.Samples };
   std::error_code failure; // such as no folder
   for (auto entry = std::filesystem::directory_iterator(beginning.parent_path(), failure);
        !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))

@@ -2,7 +2,7 @@
 #ifndef vol_KeptFile_h
 #define vol_KeptFile_h
 
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/format/ArrayStep.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,12 +18,10 @@ class KeptFile
 {
 public:
   /// `kind` says what is kept, and in which layout: it names no other.
-  KeptFile(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
-    const std::string& kind);
+  KeptFile(const ArrayStep& of, const bricks::Box& box, const std::string& kind);
 
   /// The boxes within the array for which something of this kind is kept, in no order. Throws std::bad_alloc.
-  static std::vector<bricks::Box> FindBoxes(
-    const VolumeFile& file, std::size_t array, int step, const std::string& kind);
+  static std::vector<bricks::Box> FindBoxes(const ArrayStep& of, const std::string& kind);
 
   /// Returns the `count` bytes that Keep stored, or nothing where there is no such file or its checksum differs. Throws
   /// std::bad_alloc.

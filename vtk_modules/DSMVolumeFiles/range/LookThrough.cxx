@@ -97,16 +97,15 @@ bool CanLookAtBricks(const FileArray& array)
     std::min({ samples.x, samples.y, samples.z }) > 1 && FindColumnWidth(array) >= leastWidth;
 }
 
-std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, std::size_t number,
-  int step, const bricks::Box& box, int threads, const std::function<bool(double)>& goesOn)
+std::optional<Look> LookThrough(const ArrayStep& of, const bricks::Box& box, int threads,
+  const std::function<bool(double)>& goesOn)
 {
-  const FileArray& array = file->GetArrays()[number];
+  const FileArray& array = of.Get();
   const bricks::BrickLattice lattice(
     array.Grid.Samples, array.Type, /*cellMask=*/array.Valid.Exclude(array.Type));
   const bricks::VoxelBrickReader reader(lattice,
     bricks::ValidSource::Make(
-      std::make_shared<FileSamples>(file, number, step, ChunkCache::GetShared()), lattice,
-      array.Valid));
+      std::make_shared<FileSamples>(of, ChunkCache::GetShared()), lattice, array.Valid));
   Look look{ ValueRanges(1), { lattice, FindOwnBricks(lattice, box), {}, {} } };
   bricks::SeenBricks& bricks = look.Bricks;
   bricks.Seen.resize(static_cast<std::size_t>(bricks.Bricks.GetCount()));

@@ -32,8 +32,8 @@ struct Look
 };
 
 /// As FindRanges, of an array that CanLookAtBricks; local.
-std::optional<Look> LookThrough(const std::shared_ptr<const VolumeFile>& file, std::size_t array,
-  int step, const bricks::Box& box, int threads, const std::function<bool(double)>& goesOn);
+std::optional<Look> LookThrough(const ArrayStep& of, const bricks::Box& box, int threads,
+  const std::function<bool(double)>& goesOn);
 
 } // namespace vol
 

@@ -204,16 +204,11 @@ void ValueRanges::Add(const FileArray& array, const std::byte* samples, const br
     });
 }
 
-std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
-  std::size_t number, int step, const bricks::Box& box, int threads,
+std::optional<ValueRanges> FindRanges(const ArrayStep& of, const bricks::Box& box, int threads,
   const std::function<bool(double)>& goesOn)
 {
-  const FileArray& array = file->GetArrays()[number];
-  const bricks::Index3 firstChunk = box.Min / array.Grid.ChunkSamples;
-  const bricks::Index3 lastChunk =
-    (box.Max + array.Grid.ChunkSamples - bricks::Index3(1)) / array.Grid.ChunkSamples;
-  const bricks::Box chunks{ firstChunk, lastChunk };
-  const bricks::Index3 counts = chunks.GetSize();
+  const FileArray& array = of.Get();
+  const bricks::Box chunks = array.Grid.GetChunks(box);
   const Room room(array, threads);
   std::vector<ValueRanges> parts(room.GetThreads(), ValueRanges(array.Components));
   std::vector<ByteBuffer> buffers(parts.size());
@@ -227,17 +222,16 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
       {
         return;
       }
-      const auto at = static_cast<std::int64_t>(index);
-      const bricks::Index3 chunk = firstChunk +
-        bricks::Index3(at % counts.x, at / counts.x % counts.y, at / (counts.x * counts.y));
+      const bricks::Index3 chunk =
+        chunks.Min + ChunkGrid{ chunks.GetSize() }.GetChunk(static_cast<std::int64_t>(index));
       const bricks::Box have = array.Grid.GetBox(chunk);
       // The fill value counts once.
-      const bool isFill = file->IsFill(number, step, have);
+      const bool isFill = of.File->IsFill(of.Array, of.Step, have);
       if (!isFill || !hasFill[static_cast<std::size_t>(thread)])
       {
         ByteBuffer& samples = buffers[static_cast<std::size_t>(thread)];
         samples.resize(static_cast<std::size_t>(have.GetCount()) * array.GetSampleBytes());
-        file->ReadChunk(number, step, chunk, samples.data());
+        of.File->ReadChunk(of.Array, of.Step, chunk, samples.data());
         parts[static_cast<std::size_t>(thread)].Add(
           array, samples.data(), have, bricks::Intersect(have, box));
         hasFill[static_cast<std::size_t>(thread)] |= isFill ? 1 : 0;
@@ -265,10 +259,10 @@ namespace
 {
 
 /// Those of all of the array, if the file tells them.
-std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, int step)
+std::optional<ValueRanges> ReadOwn(const ArrayStep& of)
 {
-  ValueRanges ranges(file.GetArrays()[array].Components);
-  const std::vector<double> own = file.ReadIndex(array, step).Ranges;
+  ValueRanges ranges(of.Get().Components);
+  const std::vector<double> own = of.File->ReadIndex(of.Array, of.Step).Ranges;
   if (own.size() != 4 * ranges.All.size())
   {
     return std::nullopt;
@@ -278,26 +272,23 @@ std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, in
     ranges.All[index] = { own[4 * index], own[4 * index + 1] };
     ranges.Finite[index] = { own[4 * index + 2], own[4 * index + 3] };
   }
-  return ranges.IsValid(file.GetArrays()[array].Type)
-    ? std::optional<ValueRanges>(std::move(ranges))
-    : std::nullopt;
+  return ranges.IsValid(of.Get().Type) ? std::optional<ValueRanges>(std::move(ranges))
+                                       : std::nullopt;
 }
 
-std::optional<ValueRanges> LoadKept(
-  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box)
+std::optional<ValueRanges> LoadKept(const ArrayStep& of, const bricks::Box& box)
 {
-  ValueRanges ranges(file.GetArrays()[array].Components);
+  ValueRanges ranges(of.Get().Components);
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
-  const std::vector<std::byte> kept = KeptFile(file, array, step, box, Kind).Load(2 * list);
+  const std::vector<std::byte> kept = KeptFile(of, box, Kind).Load(2 * list);
   if (kept.empty())
   {
     return std::nullopt;
   }
   std::memcpy(ranges.All.data(), kept.data(), list);
   std::memcpy(ranges.Finite.data(), kept.data() + list, list);
-  return ranges.IsValid(file.GetArrays()[array].Type)
-    ? std::optional<ValueRanges>(std::move(ranges))
-    : std::nullopt;
+  return ranges.IsValid(of.Get().Type) ? std::optional<ValueRanges>(std::move(ranges))
+                                       : std::nullopt;
 }
 
 /// Adds the part of `box` outside of `other`, as disjoint boxes.
@@ -323,21 +314,19 @@ void AddOutside(bricks::Box box, const bricks::Box& other, std::vector<bricks::B
 
 /// Merges kept boxes, the smallest first, that together cover a box; returns nothing if they do
 /// not.
-std::optional<ValueRanges> LoadCovering(
-  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box)
+std::optional<ValueRanges> LoadCovering(const ArrayStep& of, const bricks::Box& box)
 {
-  std::vector<bricks::Box> boxes = KeptFile::FindBoxes(file, array, step, Kind);
+  std::vector<bricks::Box> boxes = KeptFile::FindBoxes(of, Kind);
   std::sort(boxes.begin(), boxes.end(),
     [](const bricks::Box& a, const bricks::Box& b) { return a.GetCount() < b.GetCount(); });
-  ValueRanges ranges(file.GetArrays()[array].Components);
+  ValueRanges ranges(of.Get().Components);
   std::vector<bricks::Box> left{ box };
   for (const bricks::Box& one : boxes)
   {
     const auto meets = [&](const bricks::Box& part)
     { return !bricks::Intersect(part, one).IsEmpty(); };
-    const std::optional<ValueRanges> kept = std::any_of(left.begin(), left.end(), meets)
-      ? LoadKept(file, array, step, one)
-      : std::nullopt;
+    const std::optional<ValueRanges> kept =
+      std::any_of(left.begin(), left.end(), meets) ? LoadKept(of, one) : std::nullopt;
     if (kept)
     {
       ranges.Add(*kept);
@@ -354,33 +343,31 @@ std::optional<ValueRanges> LoadCovering(
 
 } // namespace
 
-std::optional<ValueRanges> LoadRanges(
-  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box, bool isShare)
+std::optional<ValueRanges> LoadRanges(const ArrayStep& of, const bricks::Box& box, bool isShare)
 {
   std::optional<ValueRanges> ranges;
-  if (isShare || file.GetArrays()[array].Grid.IsWhole(box))
+  if (isShare || of.Get().Grid.IsWhole(box))
   {
-    ranges = ReadOwn(file, array, step);
+    ranges = ReadOwn(of);
   }
   if (!ranges)
   {
-    ranges = LoadKept(file, array, step, box);
+    ranges = LoadKept(of, box);
   }
   if (!ranges && isShare)
   {
-    ranges = LoadCovering(file, array, step, box);
+    ranges = LoadCovering(of, box);
   }
   return ranges;
 }
 
-void KeepRanges(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
-  const ValueRanges& ranges)
+void KeepRanges(const ArrayStep& of, const bricks::Box& box, const ValueRanges& ranges)
 {
   const std::size_t list = ranges.All.size() * sizeof(ValueRange);
   std::vector<std::byte> bytes(2 * list);
   std::memcpy(bytes.data(), ranges.All.data(), list);
   std::memcpy(bytes.data() + list, ranges.Finite.data(), list);
-  KeptFile(file, array, step, box, Kind).Keep(bytes.data(), bytes.size());
+  KeptFile(of, box, Kind).Keep(bytes.data(), bytes.size());
 }
 
 } // namespace vol

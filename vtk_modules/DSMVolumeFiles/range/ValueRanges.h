@@ -2,7 +2,7 @@
 #ifndef vol_ValueRanges_h
 #define vol_ValueRanges_h
 
-#include "DSMVolumeFiles/format/VolumeFile.h"
+#include "DSMVolumeFiles/format/ArrayStep.h"
 
 #include <functional>
 #include <limits>
@@ -53,8 +53,7 @@ struct ValueRanges
 /// Reads all of a box of an array, with so many threads, or fewer if their chunks would not fit the shared
 /// cache. `goesOn(part)` receives the completed part on the calling thread; when it returns false, nothing is
 /// returned. Throws dsm::Error when the file cannot be read.
-std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& file,
-  std::size_t array, int step, const bricks::Box& box, int threads,
+std::optional<ValueRanges> FindRanges(const ArrayStep& of, const bricks::Box& box, int threads,
   const std::function<bool(double)>& goesOn);
 
 /// Ranges that the file itself tells, which are those of all of the array, or that were found before, in the user's
@@ -62,10 +61,8 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
 /// is what a rank has of all of the array, whose ranges are those of all ranks' boxes together: then they may be those of
 /// more than the box, such as what was found with another number of ranks. Neither throws; what cannot be kept is found
 /// again.
-std::optional<ValueRanges> LoadRanges(
-  const VolumeFile& file, std::size_t array, int step, const bricks::Box& box, bool isShare);
-void KeepRanges(const VolumeFile& file, std::size_t array, int step, const bricks::Box& box,
-  const ValueRanges& ranges);
+std::optional<ValueRanges> LoadRanges(const ArrayStep& of, const bricks::Box& box, bool isShare);
+void KeepRanges(const ArrayStep& of, const bricks::Box& box, const ValueRanges& ranges);
 
 } // namespace vol
 

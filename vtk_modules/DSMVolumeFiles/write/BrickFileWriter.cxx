@@ -5,7 +5,7 @@
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/hdf/HdfLibrary.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 #include "DSMVolumeFiles/write/PartState.h"
 #include "DSMVolumeFiles/write/PathClaim.h"
@@ -81,10 +81,13 @@ std::size_t BrickFileLayout::GetHaloRecordBytes(std::size_t array) const
     : 0;
 }
 
-class BrickFileWriter::Internals
+namespace
+{
+
+class HdfBrickWriter final : public BrickFileWriter
 {
 public:
-  Internals(std::string path, const BrickFileLayout& layout, const std::string& source,
+  HdfBrickWriter(std::string path, const BrickFileLayout& layout, const std::string& source,
     Unfinished unfinished)
     : Path(std::move(path))
     , PartPath(PartFiles::GetPart(this->Path))
@@ -111,29 +114,32 @@ public:
     catch (...)
     {
       this->File.Divert();
-      this->Close();
+      this->CloseAll();
       PartFiles::Remove(this->Path);
       throw;
     }
   }
 
-  ~Internals()
+  ~HdfBrickWriter() override
   {
     const std::lock_guard<std::mutex> lock(GetHdfLock());
     const HdfSilence silence;
-    this->Close();
+    this->CloseAll();
     if (this->IsRemoved)
     {
       PartFiles::Remove(this->Path);
     }
   }
 
-  void Add(std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
+  std::int64_t GetChunks(std::size_t array) const override { return this->Targets[array].Chunks; }
+
+  void Add(
+    std::size_t number, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges) override
   {
     this->Write([&] { this->AddChunks(number, chunks, ranges); });
   }
 
-  void CloseFile()
+  void Close() override
   {
     this->Write(
       [this]
@@ -143,12 +149,13 @@ public:
       });
   }
 
-  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
+  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels) override
   {
     this->Write([&] { this->WriteRest(indices, levels); });
     PartFiles::Remove(this->Path);
   }
 
+private:
   struct Target
   {
     HdfHandle Values;
@@ -157,11 +164,8 @@ public:
     std::int64_t Chunks;
     ValueRanges Ranges;
   };
-  std::vector<Target> Targets;
-  std::string Path;
 
-private:
-  void Close()
+  void CloseAll()
   {
     this->Targets.clear();
     this->File.Close();
@@ -271,7 +275,7 @@ private:
     {
       if (!this->GoOnWith(number, (*chunks)[number]))
       {
-        this->Close();
+        this->CloseAll();
         return false;
       }
     }
@@ -477,7 +481,7 @@ private:
     {
       chunks.push_back(target.Chunks);
     }
-    chunks.resize(this->Layout.Arrays.size()); // after CloseFile
+    chunks.resize(this->Layout.Arrays.size()); // after Close
     this->State.Save(isWhole, chunks);
   }
 
@@ -492,42 +496,23 @@ private:
     this->WriteState(true);
   }
 
+  std::string Path;
   std::string PartPath;
   BrickFileLayout Layout;
   bool IsRemoved; ///< unless it is finished
   PartState State;
   PathClaim Claim;
   WrittenHdfFile File;
+  std::vector<Target> Targets;
 };
 
-BrickFileWriter::BrickFileWriter(
+} // namespace
+
+std::unique_ptr<BrickFileWriter> BrickFileWriter::Make(
   std::string path, const BrickFileLayout& layout, const std::string& source, Unfinished unfinished)
 {
   const std::lock_guard<std::mutex> lock(GetHdfLock());
-  this->Self = std::make_unique<Internals>(std::move(path), layout, source, unfinished);
-}
-
-BrickFileWriter::~BrickFileWriter() = default;
-
-std::int64_t BrickFileWriter::GetChunks(std::size_t array) const
-{
-  return this->Self->Targets[array].Chunks;
-}
-
-void BrickFileWriter::Add(
-  std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges)
-{
-  this->Self->Add(array, chunks, ranges);
-}
-
-void BrickFileWriter::Close()
-{
-  this->Self->CloseFile();
-}
-
-void BrickFileWriter::Finish(const std::vector<std::vector<std::byte>>& indices, int levels)
-{
-  this->Self->Finish(indices, levels);
+  return std::make_unique<HdfBrickWriter>(std::move(path), layout, source, unfinished);
 }
 
 } // namespace vol

@@ -66,28 +66,28 @@ public:
   /// Resumes PATH.part if it was begun for the same layout and `source` (a text that identifies the values)
   /// and is complete up to its end; otherwise starts again. Throws dsm::Error; then it has removed its own
   /// new files, and has not touched the files of another process or program.
-  BrickFileWriter(std::string path, const BrickFileLayout& layout, const std::string& source,
-    Unfinished unfinished);
-  ~BrickFileWriter();
+  static std::unique_ptr<BrickFileWriter> Make(std::string path, const BrickFileLayout& layout,
+    const std::string& source, Unfinished unfinished);
+  virtual ~BrickFileWriter() = default;
   BrickFileWriter(const BrickFileWriter&) = delete;
   BrickFileWriter& operator=(const BrickFileWriter&) = delete;
 
   /// Chunks of an array that the file has, which are its first ones, in the order of their numbers.
-  std::int64_t GetChunks(std::size_t array) const;
+  virtual std::int64_t GetChunks(std::size_t array) const = 0;
 
   /// Adds the next chunks of an array, whose values have these ranges; they stay if the process ends. Throws
   /// dsm::Error when the disk is full, or fails; the writer is of no use then.
-  void Add(std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges);
+  virtual void Add(
+    std::size_t array, const std::vector<EncodedChunk>& chunks, const ValueRanges& ranges) = 0;
 
   /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
-  void Close();
+  virtual void Close() = 0;
   /// After Close: adds what is known of the bricks of each array (bricks::VoxelIndex as it is kept; empty: nothing) and
   /// the first coarser levels, which are brick files at PartFiles::GetLevel, and gives the file its name. Throws dsm::Error.
-  void Finish(const std::vector<std::vector<std::byte>>& indices, int levels);
+  virtual void Finish(const std::vector<std::vector<std::byte>>& indices, int levels) = 0;
 
-private:
-  class Internals;
-  std::unique_ptr<Internals> Self;
+protected:
+  BrickFileWriter() = default;
 };
 
 } // namespace vol

@@ -131,7 +131,7 @@ public:
       std::copy(gathered->second.begin(), gathered->second.end(), out);
       return;
     }
-    this->Cache.ReadBox(this->File, this->Numbers[array], this->Step, box, out);
+    this->Cache.ReadBox({ this->File, this->Numbers[array], this->Step }, box, out);
   }
 
 private:
@@ -163,7 +163,8 @@ private:
         outs.push_back(samples.data());
       }
     }
-    this->Cache.ReadBoxes(this->File, this->Numbers[array], this->Step, mine, outs, this->Threads);
+    this->Cache.ReadBoxes(
+      { this->File, this->Numbers[array], this->Step }, mine, outs, this->Threads);
   }
 
   std::shared_ptr<const VolumeFile> File;

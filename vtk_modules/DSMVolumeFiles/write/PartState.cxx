@@ -8,8 +8,6 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <exception>
 #include <functional>
@@ -64,77 +62,63 @@ Json Describe(const BrickFileLayout& layout)
   return text;
 }
 
-} // namespace
-
-class PartState::Internals
+/// The state's chunk counts, which are numbers from 0 on; nothing where they are not, or the file is not whole.
+std::optional<std::vector<std::int64_t>> GetChunks(const Json& state)
 {
-public:
-  /// Null where there is no state, or it is damaged.
-  Json Read() const
+  if (!state.is_object() || state.value("whole", Json()) != true)
   {
-    try
-    {
-      Json state = ParseJson(ReadWhole(PartFiles::GetState(this->Path), FileLimits::JsonBytes));
-      return state.is_object() ? state : Json();
-    }
-    catch (const std::exception&)
-    {
-      return {};
-    }
+    return std::nullopt;
   }
-
-  /// The state's chunk counts, which are numbers from 0 on; nothing where they are not, or the file is not whole.
-  static std::optional<std::vector<std::int64_t>> GetChunks(const Json& state)
+  const Json list = state.value("chunks", Json());
+  if (!list.is_array())
   {
-    if (!state.is_object() || state.value("whole", Json()) != true)
+    return std::nullopt;
+  }
+  std::vector<std::int64_t> chunks;
+  for (const Json& count : list)
+  {
+    if (!count.is_number_integer() || count.get<std::int64_t>() < 0)
     {
       return std::nullopt;
     }
-    const Json list = state.value("chunks", Json());
-    if (!list.is_array())
-    {
-      return std::nullopt;
-    }
-    std::vector<std::int64_t> chunks;
-    for (const Json& count : list)
-    {
-      if (!count.is_number_integer() || count.get<std::int64_t>() < 0)
-      {
-        return std::nullopt;
-      }
-      chunks.push_back(count.get<std::int64_t>());
-    }
-    return chunks;
+    chunks.push_back(count.get<std::int64_t>());
   }
+  return chunks;
+}
 
-  std::string Path;
-  bool IsResumable;
-  std::vector<std::int64_t> MostChunks; ///< for each array
-  Json Description;
-};
+} // namespace
 
 PartState::PartState(
   std::string path, const BrickFileLayout& layout, const std::string& source, bool isResumable)
-  : Self(std::make_unique<Internals>())
+  : Path(std::move(path))
+  , IsResumable(isResumable)
+  , Description{ { "source", Escape(source) }, { "layout", Describe(layout) } }
 {
-  this->Self->Path = std::move(path);
-  this->Self->IsResumable = isResumable;
   for (const FileArray& array : layout.Arrays)
   {
-    this->Self->MostChunks.push_back(array.Grid.GetCount());
+    this->MostChunks.push_back(array.Grid.GetCount());
   }
-  this->Self->Description = { { "source", Escape(source) }, { "layout", Describe(layout) } };
 }
 
-PartState::~PartState() = default;
+Json PartState::Read() const
+{
+  try
+  {
+    Json state = ParseJson(ReadWhole(PartFiles::GetState(this->Path), FileLimits::JsonBytes));
+    return state.is_object() ? state : Json();
+  }
+  catch (const std::exception&)
+  {
+    return {};
+  }
+}
 
 std::optional<std::vector<std::int64_t>> PartState::Load() const
 {
-  const Json state = this->Self->Read();
-  std::optional<std::vector<std::int64_t>> chunks = Internals::GetChunks(state);
-  const std::vector<std::int64_t>& most = this->Self->MostChunks;
-  if (!chunks || state.value("of", Json()) != this->Self->Description ||
-    chunks->size() != most.size() ||
+  const Json state = this->Read();
+  std::optional<std::vector<std::int64_t>> chunks = GetChunks(state);
+  const std::vector<std::int64_t>& most = this->MostChunks;
+  if (!chunks || state.value("of", Json()) != this->Description || chunks->size() != most.size() ||
     !std::equal(chunks->begin(), chunks->end(), most.begin(), std::less_equal<>()))
   {
     return std::nullopt;
@@ -144,26 +128,26 @@ std::optional<std::vector<std::int64_t>> PartState::Load() const
 
 void PartState::CheckNothingIsLost() const
 {
-  const Json state = this->Self->Read();
-  const auto chunks = Internals::GetChunks(state);
+  const Json state = this->Read();
+  const auto chunks = GetChunks(state);
   const bool hasChunks =
     chunks && std::any_of(chunks->begin(), chunks->end(), [](auto count) { return count > 0; });
   if (hasChunks && state.value("resumable", Json(true)) != false)
   {
-    const std::string part = PartFiles::GetPart(this->Self->Path);
+    const std::string part = PartFiles::GetPart(this->Path);
     throw FileError(part,
       "belongs to an interrupted conversion, which can be resumed. Run dsm_convert again to finish "
       "it, delete '" +
-        part + "' and '" + PartFiles::GetState(this->Self->Path) + "', or choose another name.");
+        part + "' and '" + PartFiles::GetState(this->Path) + "', or choose another name.");
   }
 }
 
 void PartState::Save(bool isWhole, const std::vector<std::int64_t>& chunks) const
 {
-  const Json state{ { "whole", isWhole }, { "resumable", this->Self->IsResumable },
-    { "of", this->Self->Description }, { "chunks", chunks } };
+  const Json state{ { "whole", isWhole }, { "resumable", this->IsResumable },
+    { "of", this->Description }, { "chunks", chunks } };
   const std::string text = state.dump(1) + "\n";
-  const std::string path = PartFiles::GetState(this->Self->Path);
+  const std::string path = PartFiles::GetState(this->Path);
   DurableFile::Write(path + ".new", text.data(), text.size());
   DurableFile::Rename(path + ".new", path);
 }

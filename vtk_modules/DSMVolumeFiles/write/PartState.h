@@ -4,8 +4,9 @@
 
 #include "DSMVolumeFiles/write/BrickFileWriter.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,9 +22,6 @@ public:
   /// `source` identifies the values that are written. Names in `layout` and `source` may contain any bytes.
   PartState(
     std::string path, const BrickFileLayout& layout, const std::string& source, bool isResumable);
-  ~PartState();
-  PartState(const PartState&) = delete;
-  PartState& operator=(const PartState&) = delete;
 
   /// Returns how many chunks of each array an earlier process has written, or nothing where it wrote other values, was
   /// interrupted while it wrote chunks, or the state is damaged.
@@ -35,8 +33,13 @@ public:
   void Save(bool isWhole, const std::vector<std::int64_t>& chunks) const;
 
 private:
-  class Internals;
-  std::unique_ptr<Internals> Self;
+  /// Null where there is no state, or it is damaged.
+  nlohmann::json Read() const;
+
+  std::string Path;
+  bool IsResumable;
+  std::vector<std::int64_t> MostChunks; ///< for each array
+  nlohmann::json Description;
 };
 
 } // namespace vol

@@ -60,38 +60,31 @@ PathClaim::PathClaim(const std::string& path)
   CheckReplaceable(path);
   do
   {
-    if (this->Lock >= 0)
-    {
-      close(this->Lock);
-    }
-    this->Lock =
-      open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
-    if (this->Lock < 0 && errno != EISDIR && errno != ELOOP && errno != ENXIO)
+    this->Lock = Descriptor(
+      open(this->LockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666));
+    if (!this->Lock.IsOpen() && errno != EISDIR && errno != ELOOP && errno != ENXIO)
     {
       return; // the writer reports a folder that is not writable
     }
-    if (!IsLock(this->Lock))
+    if (!IsLock(this->Lock.Get()))
     {
-      close(std::exchange(this->Lock, -1));
       throw FileError(this->LockPath,
         "is required as a lock file to write '" + path +
           "', but this program did not create it. Rename or delete it.");
     }
-    if (flock(this->Lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    if (flock(this->Lock.Get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     {
-      close(std::exchange(this->Lock, -1));
       throw FileError(
         path, "is being written by another process. Wait for that process, or end it.");
     }
-  } while (!IsAt(this->Lock, this->LockPath));
+  } while (!IsAt(this->Lock.Get(), this->LockPath));
 }
 
 PathClaim::~PathClaim()
 {
-  if (this->Lock >= 0)
+  if (this->Lock.IsOpen())
   {
     unlink(this->LockPath.c_str());
-    close(this->Lock);
   }
 }
 

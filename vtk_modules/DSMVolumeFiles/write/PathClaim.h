@@ -2,6 +2,8 @@
 #ifndef vol_PathClaim_h
 #define vol_PathClaim_h
 
+#include "DSMVolumeFiles/base/Descriptor.h"
+
 #include <string>
 
 namespace vol
@@ -21,7 +23,7 @@ public:
 
 private:
   std::string LockPath;
-  int Lock = -1;
+  Descriptor Lock;
 };
 
 } // namespace vol

@@ -47,44 +47,30 @@ void Average(const T* fine, const bricks::Box& fineBox, const bricks::Index3& fa
   const bricks::MissingTest<T> isMissing(valid);
   const bricks::Index3 has = fineBox.GetSize();
   const bricks::Index3 size = box.GetSize();
-  bricks::Index3 at;
-  for (at.z = 0; at.z < size.z; ++at.z)
-  {
-    for (at.y = 0; at.y < size.y; ++at.y)
+  bricks::ForEachIndex({ bricks::Index3(0), size },
+    [&](const bricks::Index3& at)
     {
-      for (at.x = 0; at.x < size.x; ++at.x)
+      const bricks::Index3 first = at * factors;
+      const auto get = [&](const bricks::Index3& from, int component)
+      { return fine[((from.z * has.y + from.y) * has.x + from.x) * components + component]; };
+      for (int component = 0; component < components; ++component)
       {
-        const bricks::Index3 first = at * factors;
-        const bricks::Index3 last = glm::min(first + factors, has);
-        for (int component = 0; component < components; ++component)
-        {
-          Sum<T> sum = 0;
-          int count = 0;
-          bricks::Index3 from;
-          for (from.z = first.z; from.z < last.z; ++from.z)
+        Sum<T> sum = 0;
+        int count = 0;
+        bricks::ForEachIndex({ first, glm::min(first + factors, has) },
+          [&](const bricks::Index3& from)
           {
-            for (from.y = first.y; from.y < last.y; ++from.y)
+            const T value = get(from, component);
+            if (!isMissing(value))
             {
-              for (from.x = first.x; from.x < last.x; ++from.x)
-              {
-                const T value =
-                  fine[((from.z * has.y + from.y) * has.x + from.x) * components + component];
-                if (!isMissing(value))
-                {
-                  sum += static_cast<Sum<T>>(value);
-                  ++count;
-                }
-              }
+              sum += static_cast<Sum<T>>(value);
+              ++count;
             }
-          }
-          // Without any value, the first one, which is missing, remains.
-          *out++ = count > 0
-            ? ToValue<T>(sum, count)
-            : fine[((first.z * has.y + first.y) * has.x + first.x) * components + component];
-        }
+          });
+        // Without any value, the first one, which is missing, remains.
+        *out++ = count > 0 ? ToValue<T>(sum, count) : get(first, component);
       }
-    }
-  }
+    });
 }
 
 /// Every sample that the factors say; `fineBox` begins with the first.
@@ -93,18 +79,14 @@ void Pick(const std::byte* fine, const bricks::Box& fineBox, const bricks::Index
 {
   const bricks::Index3 has = fineBox.GetSize();
   const bricks::Index3 size = box.GetSize();
-  for (std::int64_t z = 0; z < size.z; ++z)
-  {
-    for (std::int64_t y = 0; y < size.y; ++y)
+  bricks::ForEachIndex({ bricks::Index3(0), size },
+    [&](const bricks::Index3& at)
     {
-      for (std::int64_t x = 0; x < size.x; ++x)
-      {
-        const std::int64_t from = (z * factors.z * has.y + y * factors.y) * has.x + x * factors.x;
-        const std::byte* const sample = fine + static_cast<std::size_t>(from) * sampleBytes;
-        out = std::copy(sample, sample + sampleBytes, out);
-      }
-    }
-  }
+      const bricks::Index3 from = at * factors;
+      const std::int64_t number = (from.z * has.y + from.y) * has.x + from.x;
+      const std::byte* const sample = fine + static_cast<std::size_t>(number) * sampleBytes;
+      out = std::copy(sample, sample + sampleBytes, out);
+    });
 }
 
 } // namespace
@@ -177,7 +159,7 @@ void ReducedOrigin::Read(std::size_t number, const bricks::Box& box, std::byte* 
   const FileArray& array = this->Arrays[number];
   const bricks::Box fineBox = this->GetFineBox(number, box);
   ByteBuffer fine(static_cast<std::size_t>(fineBox.GetCount()) * array.GetSampleBytes());
-  this->Cache.ReadBox(this->File, number, 0, fineBox, fine.data());
+  this->Cache.ReadBox({ this->File, number, 0 }, fineBox, fine.data());
   if (array.OnCells)
   {
     Pick(fine.data(), fineBox, this->Factors, array.GetSampleBytes(), box, out);

@@ -12,7 +12,7 @@
 #include "DSMVolumeFiles/cache/FileSamples.h"
 #include "DSMVolumeFiles/codec/ChunkCodec.h"
 #include "DSMVolumeFiles/codec/HaloRecord.h"
-#include "DSMVolumeFiles/format/HdfFile.h"
+#include "DSMVolumeFiles/hdf/HdfFile.h"
 #include "DSMVolumeFiles/write/PartFiles.h"
 #include "DSMVolumeFiles/write/ReducedOrigin.h"
 
@@ -288,7 +288,7 @@ std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
         lattice.emplace(points, array.Type, false, layout.BrickEdge);
         reader = std::make_shared<bricks::VoxelBrickReader>(*lattice,
           std::make_shared<FileSamples>(
-            file, static_cast<std::size_t>(found - arrays.begin()), 0, cache));
+            ArrayStep{ file, static_cast<std::size_t>(found - arrays.begin()), 0 }, cache));
         pass.Order.resize(lattice->GetBrickCount());
         std::iota(pass.Order.begin(), pass.Order.end(), dsm::BlockId(0));
         pass.Threads = options.Threads;
@@ -424,7 +424,7 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   const char* const what = "Writing a brick file";
   BrickFileLayout layout;
   std::string source;
-  std::optional<BrickFileWriter> writer;
+  std::unique_ptr<BrickFileWriter> writer;
   std::vector<std::int64_t> begin;
   messenger.RunTogether(what,
     [&]
@@ -434,7 +434,7 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
       begin.assign(layout.Arrays.size(), 0);
       if (messenger.GetRank() == 0)
       {
-        writer.emplace(path, layout, source,
+        writer = BrickFileWriter::Make(path, layout, source,
           options.IsResumable ? BrickFileWriter::Unfinished::Keep
                               : BrickFileWriter::Unfinished::Remove);
         for (std::size_t array = 0; array < begin.size(); ++array)
@@ -450,7 +450,7 @@ void WriteBrickFile(std::unique_ptr<ValueOrigin> from, const std::string& path,
   for (std::size_t array = 0; array < begin.size(); ++array)
   {
     const std::int64_t done = messenger.AllGatherValue(begin[array]).front();
-    WriteArray(*from, layout, array, done, writer ? &*writer : nullptr, options, messenger,
+    WriteArray(*from, layout, array, done, writer.get(), options, messenger,
       [&](double part) { tellHalf(0.0, (static_cast<double>(array) + part) / arrays); });
   }
   from.reset(); // and its memory

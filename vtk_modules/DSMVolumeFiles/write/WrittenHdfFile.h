@@ -2,7 +2,7 @@
 #ifndef vol_WrittenHdfFile_h
 #define vol_WrittenHdfFile_h
 
-#include "DSMVolumeFiles/format/HdfLibrary.h"
+#include "DSMVolumeFiles/hdf/HdfLibrary.h"
 
 #include <cstdint>
 #include <string>

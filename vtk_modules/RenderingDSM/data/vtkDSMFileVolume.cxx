@@ -421,14 +421,13 @@ std::shared_ptr<const vol::FileBrickReader> vtkDSMFileVolume::CreateReader(
   {
     return std::make_shared<vol::FileBrickReader>(lattice,
       bricks::ValidSource::Make(
-        std::make_shared<vol::FileSamples>(
-          values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered),
-        lattice, this->Valid),
+        std::make_shared<vol::FileSamples>(values->GetArrayStep(), part, cache, scattered), lattice,
+        this->Valid),
       [values](std::vector<Box> boxes) { values->Prefetch(std::move(boxes)); });
   }
   const Box cells{ Index3(0), lattice.GetCells() };
-  const auto reader = std::make_shared<vol::FileCells>(
-    values->GetFile(), values->GetArrayNumber(), values->GetStep(), part, cache, scattered);
+  const auto reader =
+    std::make_shared<vol::FileCells>(values->GetArrayStep(), part, cache, scattered);
   return std::make_shared<vol::FileBrickReader>(lattice,
     std::make_shared<bricks::CellAverages>(reader),
     [values, cells](std::vector<Box> boxes)
@@ -524,8 +523,7 @@ vol::KeptFile vtkDSMFileVolume::GetKept(const bricks::BrickLattice& lattice) con
     hash.Add(&this->Valid, sizeof(this->Valid));
     kind += "-" + std::to_string(hash.Get());
   }
-  return { *this->Values->GetFile(), this->Values->GetArrayNumber(), this->Values->GetStep(),
-    this->Values->GetBox(), kind };
+  return { this->Values->GetArrayStep(), this->Values->GetBox(), kind };
 }
 
 std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const bricks::BrickLattice& lattice) const

@@ -36,9 +36,7 @@ int GetThreads()
 
 vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, std::size_t array,
   int step, const bricks::Box& box, int nextStep, vol::OpenOptions options)
-  : File(std::move(file))
-  , Array(array)
-  , Step(step)
+  : Of{ std::move(file), array, step }
   , NextStep(nextStep)
   , Box(box)
   , Options(std::move(options))
@@ -48,7 +46,7 @@ vtkDSMFileValues::vtkDSMFileValues(std::shared_ptr<const vol::VolumeFile> file, 
 void vtkDSMFileValues::ReadBox(const bricks::Box& box, std::byte* out) const
 {
   vol::ChunkCache::GetShared().ReadBox(
-    this->File, this->Array, this->Step, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
+    this->Of, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
 }
 
 void vtkDSMFileValues::Prefetch(std::vector<bricks::Box> boxes) const
@@ -57,14 +55,14 @@ void vtkDSMFileValues::Prefetch(std::vector<bricks::Box> boxes) const
   {
     box = { box.Min + this->Box.Min, box.Max + this->Box.Min };
   }
-  vol::ChunkCache::GetShared().Prefetch(this->File, this->Array, this->Step, boxes);
+  vol::ChunkCache::GetShared().Prefetch(this->Of, boxes);
 }
 
 std::uint64_t vtkDSMFileValues::GetStamp() const
 {
-  const std::string& path = this->File->GetPath();
-  const std::int64_t numbers[] = { static_cast<std::int64_t>(this->File->GetStamp()),
-    static_cast<std::int64_t>(this->Array), this->Step, this->Box.Min.x, this->Box.Min.y,
+  const std::string& path = this->Of.File->GetPath();
+  const std::int64_t numbers[] = { static_cast<std::int64_t>(this->Of.File->GetStamp()),
+    static_cast<std::int64_t>(this->Of.Array), this->Of.Step, this->Box.Min.x, this->Box.Min.y,
     this->Box.Min.z, this->Box.Max.x, this->Box.Max.y, this->Box.Max.z };
   bricks::ByteHash hash;
   hash.Add(path.data(), path.size());
@@ -77,7 +75,7 @@ vtkDSMFileValues::Place vtkDSMFileValues::Find(const bricks::Index3& sample) con
   const vol::ChunkGrid& grid = this->GetArray().Grid;
   const bricks::Index3 chunk = (sample + this->Box.Min) / grid.ChunkSamples;
   const bricks::Box has = grid.GetBox(chunk);
-  return { vol::ChunkCache::GetShared().Get(this->File, this->Array, this->Step, chunk),
+  return { vol::ChunkCache::GetShared().Get(this->Of, chunk),
     { has.Min - this->Box.Min, has.Max - this->Box.Min } };
 }
 
@@ -87,7 +85,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   const std::lock_guard<std::mutex> lock(this->RangesLock);
   if (!this->Ranges)
   {
-    this->Ranges = vol::LoadRanges(*this->File, this->Array, this->Step, this->Box, this->IsShare);
+    this->Ranges = vol::LoadRanges(this->Of, this->Box, this->IsShare);
   }
   if (!this->Ranges)
   {
@@ -95,7 +93,7 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
     dsm::FreedMemory::Return(); // memory of the threads that examined bricks
     if (this->Ranges)
     {
-      vol::KeepRanges(*this->File, this->Array, this->Step, this->Box, *this->Ranges);
+      vol::KeepRanges(this->Of, this->Box, *this->Ranges);
     }
   }
   return this->Ranges ? &*this->Ranges : nullptr;
@@ -105,12 +103,10 @@ void vtkDSMFileValues::ReadRanges(const std::function<bool(double)>& goesOn, boo
 {
   if (!withBricks)
   {
-    this->Ranges =
-      vol::FindRanges(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+    this->Ranges = vol::FindRanges(this->Of, this->Box, GetThreads(), goesOn);
     return;
   }
-  std::optional<vol::Look> look =
-    vol::LookThrough(this->File, this->Array, this->Step, this->Box, GetThreads(), goesOn);
+  std::optional<vol::Look> look = vol::LookThrough(this->Of, this->Box, GetThreads(), goesOn);
   if (look)
   {
     this->Ranges = std::move(look->Ranges);

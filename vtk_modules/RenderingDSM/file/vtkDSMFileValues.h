@@ -24,14 +24,15 @@ public:
 
   static constexpr int None = -1;
 
-  const std::shared_ptr<const vol::VolumeFile>& GetFile() const { return this->File; }
+  const std::shared_ptr<const vol::VolumeFile>& GetFile() const { return this->Of.File; }
   const vol::OpenOptions& GetOptions() const { return this->Options; }
-  std::size_t GetArrayNumber() const { return this->Array; }
-  int GetStep() const { return this->Step; }
+  std::size_t GetArrayNumber() const { return this->Of.Array; }
+  int GetStep() const { return this->Of.Step; }
+  const vol::ArrayStep& GetArrayStep() const { return this->Of; }
   int GetNextStep() const { return this->NextStep; }
   const bricks::Box& GetBox() const { return this->Box; }
 
-  const vol::FileArray& GetArray() const { return this->File->GetArrays()[this->Array]; }
+  const vol::FileArray& GetArray() const { return this->Of.Get(); }
   /// As the file has them.
   bricks::ScalarType GetType() const { return this->GetArray().Type; }
   std::int64_t GetCount() const { return this->Box.GetCount(); }
@@ -74,9 +75,7 @@ private:
   /// Under the lock; leaves Ranges unset when `goesOn` returns false.
   void ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const;
 
-  std::shared_ptr<const vol::VolumeFile> File;
-  std::size_t Array;
-  int Step;
+  vol::ArrayStep Of;
   int NextStep;
   bricks::Box Box;
   vol::OpenOptions Options;

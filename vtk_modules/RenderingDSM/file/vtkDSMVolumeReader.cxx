@@ -3,6 +3,7 @@
 
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "vtkDSMErrorGuard.h"
 #include "vtkDSMFileArray.h"
 #include "vtkDSMScalarType.h"
