@@ -41,7 +41,7 @@ public:
   void SetSource(std::function<vtkSmartPointer<vtkDataObject>()> source);
 
   /**
-   * Whether ParaView is selecting; else nothing is drawn.
+   * Set while ParaView is selecting; otherwise the mapper draws nothing.
    */
   void SetSelecting(bool selecting);
 

@@ -43,9 +43,9 @@ struct SeenBricks
   }
 };
 
-/// Reads bricks, and finds out what there is to know of them. Of bricks that hold nothing but the fill value
-/// it reads one of each size. Its threads are numbered from 0; each keeps its own brick and
-/// survey, so that none waits.
+/// Reads bricks and collects the data of the top level about them. If bricks hold nothing but the fill value, it
+/// reads only one of each size. Its threads are numbered from 0; each keeps its own brick and survey, so that none
+/// waits.
 class BrickLooker
 {
 public:
@@ -65,7 +65,7 @@ public:
   IsovalueSurvey GetSurvey() const;
 
 private:
-  /// What bricks of one size are that hold nothing but the fill value.
+  /// The data of all bricks of one size that hold nothing but the fill value.
   struct Filler
   {
     Index3 Cells;

@@ -13,7 +13,7 @@
 namespace bricks
 {
 
-/// What a first image of a volume shows.
+/// Isovalue and range of values for a first image of a volume.
 struct FirstLook
 {
   /// Empty if no surface passes at any value.

@@ -13,7 +13,7 @@
 namespace bricks
 {
 
-/// A leaf of another level than a brick's, as ranks tell one another. Plain.
+/// A leaf whose level differs from a brick's, for messages between ranks. Plain.
 struct ForeignLeaf
 {
   std::int32_t Level;
@@ -95,7 +95,7 @@ public:
   void AddCorners(const ForeignLeaf& leaf);
   /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is missing.
   void FindHanging();
-  /// Then those of points at the border. `limits`: the least and the largest value of all cells.
+  /// Then finds the values of points at the border. `limits`: the smallest and the largest value of all cells.
   void ExtendToBorder(const std::array<double, 2>& limits);
 
   /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their corners' values.
@@ -124,7 +124,7 @@ public:
   }
   /// When all leaves are there. See VoxelBrickHeader.
   std::uint8_t FindBorders() const;
-  /// At the points of the brick, x fastest. Those that no leaf touches are 0.
+  /// The values at the points of the brick, x fastest. Points that no leaf touches have 0.
   const LevelNumbers& GetValues() const { return this->Values; }
 
 private:
@@ -166,7 +166,7 @@ private:
   /// For values of points: that of a leaf of the level at one of its corners.
   void OfferValue(const Index3& point, int level, double value);
   ForeignLeaf GetLeaf(const Index3& cell) const;
-  /// What fills the octant of a point.
+  /// Returns the leaf that fills an octant of a point.
   Corner GetOctant(const Index3& point, int octant) const;
   /// Its level, or Smaller.
   int GetOctantLevel(const Index3& point, int octant) const;

@@ -141,17 +141,17 @@ protected:
   virtual void Forget(const BlockSegment& segment, const std::vector<bool>& which) = 0;
   /// Returns whether a foreseen block is pending or cached, and no worker has used it.
   virtual bool IsUnused(const BlockWant& block) const = 0;
-  /// The frame is over: it becomes an ordinary block. Whether it was here and unused.
+  /// Called after a frame: a foreseen block becomes an ordinary one. Returns whether it was here and unused.
   virtual bool Settle(const BlockWant& block) = 0;
   virtual void AddCounters(StoreCounters& counters) const = 0;
 
   // -- Moments of a frame at which a store may have more to do; under the lock --
 
   virtual void Opened() {}
-  /// The frame is open no more: cancelled, or over. Before, and after the queues were emptied.
+  /// Called at the end of a frame, finished or cancelled: before and after the queues are emptied.
   virtual void Closing() {}
   virtual void Closed() {}
-  /// Before the queues are looked at. Returns whether it did anything.
+  /// Called before the queues are processed. Returns whether it did anything.
   virtual bool BeginService() { return false; }
   /// Returns whether the store has work for the communication thread apart from the queues. No
   /// lock.
@@ -161,19 +161,19 @@ protected:
 
   // -- For the stores, under the lock --
 
-  /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined, or the system was
-  /// advised of the block before.
+  /// Queues a block that is absent, or joins the workers that wait for it. Returns whether it joined, or the system
+  /// was advised of the block before.
   bool Want(const BlockWant& block);
   /// Lets a worker that misses a block read it by itself, without the lock. This requires that no other
   /// thread reads it, that there is room, and that the read does not wait; it avoids waking threads. Returns
   /// whether the block is here now. If not, the worker has to call Want, if the frame is still open, because
   /// others may wait by now.
   bool ReadAtOnce(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock);
-  /// A worker misses a block, and waits until it is here or the frame is open no more. `keeps`: the
-  /// block stays until the worker has its slot back.
+  /// Makes a worker that misses a block wait until the block is here or the frame has ended. `keeps`: the block
+  /// stays until the worker has its slot back.
   void WaitFor(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock,
     WorkerSlots* slots, bool keeps);
-  /// Throws why a block cannot be had now.
+  /// Throws the reason why a block is not available now.
   [[noreturn]] void Refuse(const BlockSegment& segment) const;
   std::size_t GetFootprint(const BlockWant& block) const
   {

@@ -88,8 +88,8 @@ public:
   std::shared_ptr<BlockSegment> Publish(
     std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
-  /// Collective in order (no message is exchanged), between frames: forgets the segment and its
-  /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
+  /// Collective in order (no message is exchanged), between frames: forgets the segment and its cached blocks. The
+  /// blocks of it that this rank owns stay until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
   /// Between frames: takes over what another store on this messenger has published, or hands it over,
@@ -130,12 +130,11 @@ private:
   /// Passes a quiescent point, the epoch having moved.
   void Announce(Worker& worker);
 
-  /// Moves on when blocks are evicted. Their addresses are cleared before the new epoch is stored
-  /// (release), so a worker that has loaded it (acquire) and announces it can no longer reach them,
-  /// and its announcement (release) follows its last read of them: once the communication thread
-  /// sees (acquire) that every worker is offline or has announced the epoch, their memory is free.
-  /// A worker comes online under the store's lock, under which blocks are evicted and freed too:
-  /// either it is seen, or it sees.
+  /// Moves on when blocks are evicted. Their addresses are cleared before the new epoch is stored (release). So a
+  /// worker that has loaded it (acquire) and announces it can no longer reach them, and its announcement (release)
+  /// follows its last read of them. Once the communication thread sees (acquire) that every worker is offline or
+  /// has announced the epoch, their memory is free. A worker comes online under the store's lock, under which
+  /// blocks are evicted and freed too: either it is seen, or it sees.
   alignas(64) std::atomic<std::uint64_t> Epoch{ 1 };
   std::unique_ptr<Internals> Self;
 };

@@ -142,7 +142,7 @@ private:
     }
   }
 
-  /// Those of `rays` that have not ended where they enter.
+  /// Returns the subset of `rays` that have not ended where they enter.
   HWY_INLINE Mask FindOpen(const float* enter, Mask rays) const
   {
     const D tag;

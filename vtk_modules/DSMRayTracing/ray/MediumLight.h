@@ -111,7 +111,8 @@ public:
   }
 
   ///@{
-  /// The parts of Add, for those who know the transmittance of a piece, and the part of what it emits that gets out.
+  /// The parts of Add, for callers that have the transmittance of a piece already, and the share of its emission
+  /// that leaves it.
   void Keep(int ray, double begin, double end, const Lanes& amount, double passed)
   {
     std::vector<MediumPiece>& pieces = this->Pieces[ray];

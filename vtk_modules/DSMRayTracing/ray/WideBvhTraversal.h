@@ -16,7 +16,8 @@ constexpr int LargestWideBvhDepth = 33;
 constexpr int LargestWideBvhStack =
   (bricks::WideBvhWidth - 1) * LargestWideBvhDepth + bricks::WideBvhWidth;
 
-/// Visits the leaves of a hierarchy that `wanted` tells of, nearest first: see ChildrenOnRay and ChildrenInRange. It has
+/// Visits the leaves of a hierarchy that `wanted` selects, nearest first: see ChildrenOnRay and ChildrenInRange. It
+/// has
 /// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for; `enter`
 ///   tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.

@@ -50,7 +50,7 @@ public:
   ///@}
 
   /**
-   * Whether a file looks like one of a format that is read.
+   * Returns whether a file looks like one of the supported formats.
    */
   virtual int CanReadFile(const char* name);
 
@@ -64,7 +64,7 @@ public:
 
   ///@{
   /**
-   * Of a file with several levels of detail: 0 (the default) is the finest.
+   * Level of detail to read, in a file with several: 0 (the default) is the finest.
    */
   vtkSetMacro(Level, int);
   vtkGetMacro(Level, int);
@@ -78,7 +78,7 @@ public:
 
   ///@{
   /**
-   * Of an HDF5 file that is not VTK's: the dataset to have. Empty (the default): all those that have the largest
+   * Dataset to read from an HDF5 file that is not VTK's. Empty (the default): all datasets that have the largest
    * shape of three axes in the file.
    */
   vtkSetMacro(DatasetName, std::string);
@@ -101,9 +101,9 @@ public:
 
   ///@{
   /**
-   * Whether the file has bare values (.raw), and what describes these: samples along each axis, their type (VTK_FLOAT
-   * and so on) and number of components, whether the high byte comes first, bytes before the first value, and the
-   * distance of samples, unless Spacing has it.
+   * GetRawFile returns whether the file has bare values (.raw). The others describe these: samples along each axis,
+   * their type (VTK_FLOAT and so on) and number of components, the order of bytes (RawBigEndian), bytes before the
+   * first value, and the distance of samples, unless Spacing has it.
    */
   virtual bool GetRawFile();
   vtkSetVector3Macro(RawDimensions, int);
@@ -122,9 +122,9 @@ public:
 
   ///@{
   /**
-   * Whether the output has ordinary arrays, each read as a whole; false by default. Before VTK 9.4,
-   * vtkTemporalStatistics needs it: of others it adds up steps wrongly, without a word. It is an error when an array
-   * takes more than half of what the host has left.
+   * If true, the output has ordinary arrays, each read entirely; false by default. Before VTK 9.4,
+   * vtkTemporalStatistics needs it: it silently adds up the steps of other arrays wrongly. It is an error if an
+   * array takes more than half of the host's available memory.
    */
   vtkSetMacro(ValuesInMemory, bool);
   vtkGetMacro(ValuesInMemory, bool);

@@ -88,7 +88,7 @@ public:
   std::string GetSummary() const;
 
   /**
-   * Of the last frame; 0 without one.
+   * Number of ranks that traced the last frame; 0 without one.
    */
   int GetNumberOfRanks() const;
 

@@ -462,7 +462,7 @@ bool vtkDSMScene::TraceFrame()
   {
     member.State->ReportMessages(!self.Group || self.Group->GetMessenger().GetRank() == 0);
   }
-  // One that other settings do not mend is told again: whoever has changed them shall know.
+  // Report the failure again after settings have changed, so that the user sees that it remains.
   const unsigned version = self.Group ? self.Group->GetSettingsVersion() : 0;
   if (!failure.empty() && (failure != self.Failure || version != self.FailureVersion))
   {

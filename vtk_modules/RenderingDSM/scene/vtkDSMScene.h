@@ -3,11 +3,10 @@
  * @class   vtkDSMScene
  * @brief   traces all volumes and actors of a renderer that have one of our mappers, once a frame
  *
- * One for each renderer. Hears the renderer's StartEvent with priority -1, after the camera has been
- * synchronized between the ranks, and then, on all ranks at once, takes in data that changed, traces
- * the frame, and gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every
- * rank that renders must hold the scene, also one that has no data; a process that only displays
- * (ParaView's client) must not.
+ * One for each renderer. Observes the renderer's StartEvent with priority -1, after the camera has been
+ * synchronized between the ranks. Then, on all ranks at once, it takes in data that changed, traces the frame, and
+ * gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every rank that renders must hold
+ * the scene, also one that has no data; a process that only displays (ParaView's client) must not.
  *
  * Usage: `vtkSmartPointer<vtkDSMScene> scene = vtkDSMScene::ForRenderer(renderer)`, kept for as long
  * as they shall be drawn; add vtkVolumes that have a vtkDSMVolumeMapper, and vtkActors that have a
@@ -50,9 +49,9 @@ public:
 
   ///@{
   /**
-   * The renderer's scene, made when there is none. It lives as long as somebody holds it. The second is
-   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers. Null, with
-   * a warning, without a renderer.
+   * The renderer's scene, made when there is none. It lives as long as any reference to it. The second is for
+   * wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers. Null, with a
+   * warning, without a renderer.
    */
   VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
   /**
@@ -115,13 +114,12 @@ public:
 
   /**
    * Makes a picture without a window, and so without OpenGL, a display, a graphics card or EGL: what our mappers
-   * show in the renderer, from its active camera (clipping range included), with its lights, of which there is a
-   * headlight where there are none, and with all samples. `image` gets `width` x `height` points, row 0 the lowest,
-   * with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1 where nothing
-   * is. Colors lie over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are
-   * not multiplied by it. What others draw in the renderer is left out. The pixels are those that a window of this
-   * size shows; how the frame reaches windows makes no difference. A renderer without a window needs no more than
-   * VTK's libraries.
+   * show in the renderer, from its active camera (clipping range included), with its lights, or a headlight if it
+   * has none, and with all samples. `image` gets `width` x `height` points, row 0 the lowest, with the scalars
+   * "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1 where nothing is. Colors lie
+   * over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are not multiplied
+   * by it. Props with other mappers are left out. The pixels are those that a window of this size shows; how the
+   * frame reaches windows makes no difference. A renderer without a window needs no more than VTK's libraries.
    *
    * Collective: every rank calls it with the same size, also one that has no data. Each gets the whole picture, unless
    * its `image` is null. False, with an error as for a frame, where there is none; the same on every rank.
@@ -189,9 +187,8 @@ public:
 
   ///@{
   /**
-   * Whether every frame is of the finest data, also while the window wants interactive rates and
-   * vtkDSMMemoryOptions lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every
-   * rank.
+   * Traces every frame from the finest data, also while the window wants interactive rates and vtkDSMMemoryOptions
+   * lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every rank.
    */
   void SetAlwaysFinest(bool finest);
   bool GetAlwaysFinest() const;
@@ -205,10 +202,10 @@ public:
   void SetTileDisplay(int columns, int rows, int gapX = 0, int gapY = 0);
 
   /**
-   * Whether the last picture has all the samples that were asked for; the same on every rank. Not so
-   * either when the last render was aborted: while it traces, the window of rank 0 is asked for its
-   * abort status (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last
-   * picture; what was traced of samples that are added to it is not lost.
+   * Returns whether the last picture has all the samples that were asked for; the same on every rank. False, too,
+   * after a render that was aborted: while it traces, the window of rank 0 is asked for its abort status
+   * (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last picture; what was traced
+   * of samples that are added to it is not lost.
    */
   bool IsRefined() const;
 
@@ -223,13 +220,13 @@ public:
   int GetNumberOfSamplesWanted() const;
 
   /**
-   * Whether a frame is being made: from taking in data, of which the mappers tell the progress, to the
-   * last tile.
+   * Returns whether a frame is being made: from taking in data, whose progress the mappers report, to the last
+   * tile.
    */
   bool IsTracing() const;
 
   /**
-   * Of the last frame; the same on every rank.
+   * Returns the statistics of the last frame; the same on every rank.
    */
   vtkDSMStatistics* GetStatistics() const;
 

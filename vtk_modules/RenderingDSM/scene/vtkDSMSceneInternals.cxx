@@ -26,7 +26,7 @@ namespace
 /// Frames per second; an application that wants as many from its window is moving the camera.
 constexpr double InteractiveRate = 1.0;
 
-/// That an interactive frame may take, where its resolution may be lowered, and the lowest one.
+/// Time limit of an interactive frame in seconds, and the largest reduction of its resolution.
 constexpr double InteractiveSeconds = 0.07;
 constexpr int LargestReduction = 8;
 

@@ -69,7 +69,7 @@ public:
   vtkWeakPointer<vtkRenderer> Renderer;
   std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
-  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, if only the renderer keeps it
   vtkSmartPointer<vtkDSMScene>
     Rendering;                ///< the scene itself, from the start of a render to its end
   bool DrawsAgain = false;    ///< it was made in the middle of a frame

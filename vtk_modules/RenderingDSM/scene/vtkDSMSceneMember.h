@@ -55,8 +55,8 @@ public:
   /// that the ranks share.
   virtual bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const = 0;
 
-  /// Local, also while the scene has not looked at its props: whether what was taken in is of data that are not there
-  /// any more.
+  /// Local, also while the scene has not looked at its props: returns whether the data that were taken in no longer
+  /// exist.
   virtual bool IsOutdated() = 0;
   /// Local, the same on every rank: whether another member, of any scene, has some of this one's bricks.
   virtual bool SharesBlocks(const vtkDSMSceneMember& other) const = 0;
@@ -68,8 +68,8 @@ public:
   virtual void GiveUpBlocks() = 0;
   virtual bool HasBlocks() const = 0;
 
-  /// Collective. Takes in what is missing: everything when any rank has new data, else what the
-  /// mapper names and is not there yet. What goes wrong is kept as a message.
+  /// Collective. Takes in what is missing: everything when any rank has new data, else what the mapper names and is
+  /// still missing. Failures are kept as messages.
   virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
 
   /// Collective, after Update. While they are wanted, the mapper's data are there at coarser levels, too, where
@@ -80,7 +80,7 @@ public:
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
   void SetCoarser(int level) { this->Coarser = level; }
 
-  /// What surfaces are extracted for; see vtkDSMScene::ExtractIsosurfaces.
+  /// Purpose of extracted surfaces; see vtkDSMScene::ExtractIsosurfaces.
   enum class Purpose
   {
     Selection,

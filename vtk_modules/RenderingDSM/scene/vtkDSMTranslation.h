@@ -54,8 +54,8 @@ public:
   /// The same functions as colors and opacities of single values.
   static std::shared_ptr<const rt::ColorMap> ToColorMap(
     vtkVolumeProperty* property, int component, double first, double last);
-  /// The color function, as the legend of a property's component shows it, for values of a range,
-  /// with the opacities of the same values or opaque. What is not a number is transparent.
+  /// The color function, as the legend of a property's component shows it, for values of a range, with the
+  /// opacities of the same values or opaque. NaN is transparent.
   static rt::ColorMap ToColorMap(
     vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity);
   /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of length. In a mean,
