@@ -95,8 +95,8 @@ public:
   ///@}
 
   /**
-   * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look alike are
-   * together, with a vtkPVDSMExportLook.
+   * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look
+   * alike are together, with a vtkPVDSMExportLook.
    */
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 

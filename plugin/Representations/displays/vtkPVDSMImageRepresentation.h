@@ -128,8 +128,8 @@ public:
 
   ///@{
   /**
-   * The slices that vtkPVDSMSliceRepresentation shows: for each axis one by its index (of the samples, from 0), and a list
-   * of further ones; and a plane in world coordinates.
+   * The slices that vtkPVDSMSliceRepresentation shows: for each axis one by its index (of the samples, from 0), and
+   * a list of further ones; and a plane in world coordinates.
    */
   void SetSliceX(bool isShown) { this->Slicing.Axes[0].IsShown = isShown; }
   void SetSliceY(bool isShown) { this->Slicing.Axes[1].IsShown = isShown; }

@@ -33,8 +33,8 @@ public:
   vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMDSMRepresentationProxy);
 
   /**
-   * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on that it
-   * is automatic.
+   * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on
+   * that it is automatic.
    */
   static void SetAutomatic(vtkSMProperty* property, const std::function<void()>& choose);
 

@@ -56,8 +56,8 @@ public:
   BrickLooker(const BrickLattice& lattice, const dsm::BlockReader& reader, int threads,
     FillerTest isFiller = {});
 
-  /// The block of a brick, which stays until the thread's next one; null where the thread has read a block with the same
-  /// bytes before. Throws what the reader does.
+  /// The block of a brick, which stays until the thread's next one; null where the thread has read a block with the
+  /// same bytes before. Throws what the reader does.
   const std::byte* Read(dsm::BlockId id, int thread);
   /// Returns the data of the brick that the thread has read. Each brick counts once in the survey.
   SeenBrick See(dsm::BlockId id, int thread);

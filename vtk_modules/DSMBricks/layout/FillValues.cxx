@@ -57,8 +57,8 @@ std::vector<Kind> FindKinds(const IsovalueSurvey& survey)
   return kinds;
 }
 
-/// Bricks within the limits are made of macrocells within them, so what does not stand alone beside these bricks does not
-/// beside the macrocells.
+/// Bricks within the limits are made of macrocells within them, so what does not stand alone beside these bricks
+/// does not beside the macrocells.
 bool MayStandAlone(const Kind& kind, const std::vector<const std::vector<ValueRange>*>& bricks)
 {
   ValueRange within = ValueRange::GetEmpty();

@@ -63,13 +63,14 @@ private:
 
 /// The values at the points of a brick's leaves, from those of the leaves around them.
 ///
-/// All leaves together carry one continuous function, which is trilinear in each of them: like the conforming spaces of
-/// finite elements with hanging nodes (Gupta, A finite element for transition from a fine to a coarse grid, 1978). A point
-/// that is a corner of all leaves that it touches has their mean: a leaf counts once for each of the eight octants around the
-/// point that it fills, and the less the larger it is, so that a linear function keeps its values across levels. Where values
-/// are of points, it has the one of the smallest leaf. A point that lies within a face or an edge of a larger leaf hangs: it
-/// has the value that the largest such leaf has there. So a leaf's value on a face is the same from both sides, whatever the
-/// levels, up to the rounding of hanging points to the type of the samples.
+/// All leaves together carry one continuous function, which is trilinear in each of them: like the conforming
+/// spaces of finite elements with hanging nodes (Gupta, A finite element for transition from a fine to a coarse
+/// grid, 1978). A point that is a corner of all leaves that it touches has their mean: a leaf counts once for each
+/// of the eight octants around the point that it fills, and the less the larger it is, so that a linear function
+/// keeps its values across levels. Where values are of points, it has the one of the smallest leaf. A point that
+/// lies within a face or an edge of a larger leaf hangs: it has the value that the largest such leaf has there. So
+/// a leaf's value on a face is the same from both sides, whatever the levels, up to the rounding of hanging points
+/// to the type of the samples.
 ///
 /// Where nothing is beyond a point, the mean of the values of cells is one half a cell inside. The
 /// function goes on to the border as it is from there to the next point inside, so that a linear
@@ -83,8 +84,8 @@ public:
   LevelNodes(const LevelLattice& lattice, dsm::BlockId id, bool ofPoints);
 
   ///@{
-  /// Leaves of the brick's own level, in it or beside it: of the cells of `box`, those of `isLeaf`. `values`: of the cells, or
-  /// of their points.
+  /// Leaves of the brick's own level, in it or beside it: of the cells of `box`, those of `isLeaf`. `values`: of
+  /// the cells, or of their points.
   void AddLeaves(const Box& box, const double* values, const std::uint8_t* isLeaf);
   /// After all of the brick's level: a leaf that touches the brick; ignored where it touches none of its leaves.
   void AddLeaf(const ForeignLeaf& leaf);
@@ -93,12 +94,14 @@ public:
   void FindMeans();
   /// The values at the corners of a larger leaf that touches the brick, which are final.
   void AddCorners(const ForeignLeaf& leaf);
-  /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is missing.
+  /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is
+  /// missing.
   void FindHanging();
   /// Then finds the values of points at the border. `limits`: the smallest and the largest value of all cells.
   void ExtendToBorder(const std::array<double, 2>& limits);
 
-  /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their corners' values.
+  /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their
+  /// corners' values.
   template <class Visit>
   void ForEachLeafTouching(int level, const Box& box, const Visit& visit) const
   {

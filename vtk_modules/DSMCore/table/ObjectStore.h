@@ -107,11 +107,12 @@ public:
   Pin Acquire(Worker& worker, const BlockSegment& segment, BlockId id);
 
   /// Worker: it will probably need these blocks soon, the likeliest first. Where the bytes of those that are absent
-  /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is advised
-  /// to read it, which takes nothing of the cache; of a file's, also those that `addNeighbors` (may be empty) adds,
-  /// which lie beside it in the file. Other ranks' blocks are asked for in one go, unless too much of the cache is taken
-  /// by blocks that were prefetched and not used yet. Never waits; ids that there are not, blocks that are here or on
-  /// their way, retired segments and frames that are not open are passed by. Returns whether any block was not here.
+  /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is
+  /// advised to read it, which takes nothing of the cache; of a file's, also those that `addNeighbors` (may be
+  /// empty) adds, which lie beside it in the file. Other ranks' blocks are asked for in one go, unless too much of
+  /// the cache is taken by blocks that were prefetched and not used yet. Never waits; ids that there are not,
+  /// blocks that are here or on their way, retired segments and frames that are not open are passed by. Returns
+  /// whether any block was not here.
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
     FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors = {});
 

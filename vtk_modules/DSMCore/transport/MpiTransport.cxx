@@ -563,7 +563,8 @@ private:
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
 };
 
-/// MPI deletes the attributes of MPI_COMM_SELF before it ends, while communication still works (MPI 4.0, section 11.2.4).
+/// MPI deletes the attributes of MPI_COMM_SELF before it ends, while communication still works (MPI 4.0, section
+/// 11.2.4).
 void CloseEndedBeforeMpiEnds()
 {
   static bool isAsked = false;

@@ -18,11 +18,11 @@ constexpr int LargestWideBvhStack =
 
 /// Visits the leaves of a hierarchy that `wanted` selects, nearest first: see ChildrenOnRay and ChildrenInRange. It
 /// has
-/// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for; `enter`
-///   tells where;
+/// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
+///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call but the
-/// leaf's.
+/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
+/// but the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {

@@ -3,11 +3,12 @@
  * @class   vtkDSMVolumeReader
  * @brief   image data, or a rectilinear grid, whose values stay in their file until somebody asks for them
  *
- * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced. Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
+ * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced.
+ * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
  * values. When it has executed, no value has been read, but for the arrays' ranges, which are found once for a file
  * and kept in the user's cache directory: the arrays of its output (vtkDSMFileArray) read what filters and mappers
- * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask
- * for different pieces get those.
+ * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask for
+ * different pieces get those.
  */
 
 #ifndef vtkDSMVolumeReader_h
@@ -134,8 +135,8 @@ public:
   ///@{
   /**
    * MiB of values of files that stay in memory, in the whole process; 128 by default. While pictures are made of a
-   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the memory; or
-   * what four need, and at most half of it.
+   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the
+   * memory; or what four need, and at most half of it.
    */
   static void SetCacheMebibytes(int size);
   static int GetCacheMebibytes();
@@ -171,7 +172,8 @@ private:
   void TellOfRest() const;
   /// The extent, the place in the world, the scalars and the time steps of the open file.
   void TellOfFile(vtkInformation* information) const;
-  /// Returns whether the file can be opened by now: what describes bare values must be there. Opens it. Throws dsm::Error.
+  /// Returns whether the file can be opened by now: what describes bare values must be there. Opens it. Throws
+  /// dsm::Error.
   bool OpenIfDescribed();
   /// Makes the output an image or a rectilinear grid.
   void CreateOutput(vtkInformation* information);

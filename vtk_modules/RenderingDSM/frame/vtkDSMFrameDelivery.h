@@ -33,7 +33,8 @@ public:
   /// visible.
   bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
 
-  /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else nothing.
+  /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else
+  /// nothing.
   rt::Picture Assemble(const rt::Frame& frame) const;
 
   /// Collective where NeedsRanks: what this rank draws; the whole frame, or its own tiles. `assembled`: see

@@ -32,8 +32,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * This rank's counters of a frame, for all ranks: what rt::FrameRenderer::Records calls a report. `ranks` trace, of which
-   * this is number `rank`.
+   * This rank's counters of a frame, for all ranks: what rt::FrameRenderer::Records calls a report. `ranks` trace,
+   * of which this is number `rank`.
    */
   static std::vector<std::byte> CreateReport(
     dsm::BlockStore& store, const rt::Frame& frame, int rank, int ranks);

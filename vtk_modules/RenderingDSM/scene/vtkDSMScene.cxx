@@ -140,7 +140,8 @@ void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
   }
   const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
   scene->Self->Keeper = scene;
-  // Too late for this frame: what is opaque may be drawn already, and parts of assemblies are where these have put them.
+  // Too late for this frame: what is opaque may be drawn already, and parts of assemblies are where these have put
+  // them.
   scene->Self->DrawsAgain = true;
 }
 

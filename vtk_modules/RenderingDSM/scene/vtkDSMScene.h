@@ -13,8 +13,8 @@
  * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them. In one process
  * the mappers make a scene where there is none, and the renderer keeps it.
  *
- * Failures are reported with vtkErrorMacro, once for each change of state or of the memory's settings, on every rank; the picture
- * then lacks what could not be drawn, and the application goes on.
+ * Failures are reported with vtkErrorMacro, once for each change of state or of the memory's settings, on every
+ * rank; the picture then lacks what could not be drawn, and the application goes on.
  */
 
 #ifndef vtkDSMScene_h
@@ -62,9 +62,9 @@ public:
   ///@}
 
   /**
-   * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the
-   * renderer, and has the frame drawn again when it ends. With several processes this is an error, which is reported once
-   * for each renderer: other ranks may not be drawing.
+   * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the renderer, and
+   * has the frame drawn again when it ends. With several processes this is an error, which is reported once for
+   * each renderer: other ranks may not be drawing.
    */
   static void DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper);
 
@@ -128,16 +128,17 @@ public:
 
   ///@{
   /**
-   * Makes the triangles of the isosurfaces that a mapper shows in the renderer, from the values that pictures are traced
-   * from: on any number of ranks, and around missing values, they are where the picture has surfaces. `surfaces`, which is
-   * empty, gets a vtkPolyData for each image, block of AMR or hyper tree grid of this rank, with the triangles in its own
-   * cells, ghost cells excluded, in the data's coordinates. Their cells have vtkOriginalCellIds, and their points
-   * vtkOriginalPointIds, the nearest points of the dataset (of a hyper tree grid: -1); of a composite dataset, both have
-   * vtkCompositeIndex. For exports they have normals and the array that colors the surface: as in the dataset, or, of
-   * AMR and hyper tree grids, the mapped component at the points.
+   * Makes the triangles of the isosurfaces that a mapper shows in the renderer, from the values that pictures are
+   * traced from: on any number of ranks, and around missing values, they are where the picture has surfaces.
+   * `surfaces`, which is empty, gets a vtkPolyData for each image, block of AMR or hyper tree grid of this rank,
+   * with the triangles in its own cells, ghost cells excluded, in the data's coordinates. Their cells have
+   * vtkOriginalCellIds, and their points vtkOriginalPointIds, the nearest points of the dataset (of a hyper tree
+   * grid: -1); of a composite dataset, both have vtkCompositeIndex. For exports they have normals and the array
+   * that colors the surface: as in the dataset, or, of AMR and hyper tree grids, the mapped component at the
+   * points.
    *
-   * Where levels of AMR or trees meet, triangles of both sides may leave narrow gaps. For selections, hyper tree grids have
-   * no triangles: VTK extracts none of their cells.
+   * Where levels of AMR or trees meet, triangles of both sides may leave narrow gaps. For selections, hyper tree
+   * grids have no triangles: VTK extracts none of their cells.
    *
    * Collective, between frames. False, with an error on every rank, when that fails, also if any rank would have more
    * than MostTriangles, or, for a selection, an image more than MostCellsOfSelection cells: ParaView takes 10 bytes or

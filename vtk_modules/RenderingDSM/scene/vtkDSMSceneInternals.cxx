@@ -170,8 +170,8 @@ std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
   return Describe(outcome);
 }
 
-/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what this rank
-/// draws, as far as it needs no other ranks, when the frame was traced.
+/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what
+/// this rank draws, as far as it needs no other ranks, when the frame was traced.
 rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scene,
   const rt::FrameRequest& request, Offers offers, int coarser, rt::Picture& picture)
 {

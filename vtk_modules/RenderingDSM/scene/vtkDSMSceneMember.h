@@ -60,8 +60,9 @@ public:
   virtual bool IsOutdated() = 0;
   /// Local, the same on every rank: whether another member, of any scene, has some of this one's bricks.
   virtual bool SharesBlocks(const vtkDSMSceneMember& other) const = 0;
-  /// Collective, before new data are taken in. Where the old ones' bricks are shared by members that are outdated on all
-  /// ranks, these give their bricks up, so that there is room, or that the bricks can be taken over. Returns those members.
+  /// Collective, before new data are taken in. Where the old ones' bricks are shared by members that are outdated
+  /// on all ranks, these give their bricks up, so that there is room, or that the bricks can be taken over. Returns
+  /// those members.
   std::vector<const vtkDSMSceneMember*> FreeOutdated(dsm::Messenger& messenger);
 
   /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
@@ -86,8 +87,8 @@ public:
     Selection,
     Export
   };
-  /// Collective, after Update: adds the isosurfaces in this rank's data to `surfaces`. Throws the same dsm::Error on every
-  /// rank.
+  /// Collective, after Update: adds the isosurfaces in this rank's data to `surfaces`. Throws the same dsm::Error
+  /// on every rank.
   virtual void ExtractIsosurfaces(vtkDSMRankGroup&, Purpose, vtkMultiBlockDataSet* /*surfaces*/) {}
 
   /// Local: what the prop shows.
@@ -102,8 +103,8 @@ public:
   /// When a frame last showed it; on every rank in the same order.
   vtkMTimeType GetTimeShown() const { return this->Shown.GetMTime(); }
 
-  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells` them; on others
-  /// they reach who observes the error or warning event.
+  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells`
+  /// them; on others they reach who observes the error or warning event.
   void ReportMessages(bool tells);
 
 protected:
