@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMDSMImageRepresentationProxy
- * @brief   keeps track of which isosurface array and isovalue nobody has chosen
+ * @brief   keeps track of whether the isosurface array and the isovalue are automatic
  *
  * DSMIsoArrayAutomatic and DSMIsoValueAutomatic are on at first. When the panel, a script, an animation or a state
  * file sets DSMIsoArray or DSMIsoValue, ParaView notifies this proxy, which switches the one or the other off.

@@ -90,7 +90,7 @@ bool CanRefine(vtkPVRenderView* view)
   return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
 }
 
-/// Tells the scene which windows are one display (pvserver's --tdx and --tdy).
+/// Sets which of the scene's windows are one display (pvserver's --tdx and --tdy).
 void SetTileDisplay(vtkDSMScene* scene)
 {
   auto* configuration = vtkRemotingCoreConfiguration::GetInstance();
@@ -131,8 +131,8 @@ bool ShowsSelection(vtkPVDataRepresentation* shown)
     source->GetNumberOfInputConnections(1) > 0;
 }
 
-/// Returns whether the view shows any dataset in another representation than the plugin's, or a selection. Axes and
-/// text are not composite representations and are ignored.
+/// Returns whether the view shows any dataset in a representation that is not the plugin's, or a selection. Axes
+/// and text are not composite representations and are ignored.
 bool ShowsOthers(vtkView* view)
 {
   for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)

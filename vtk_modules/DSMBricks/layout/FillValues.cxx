@@ -29,7 +29,7 @@ struct Kind
       constexpr double ratio = 1e-6;
       return std::max(std::abs(least), std::abs(greatest)) <= ratio * std::abs(this->Fill);
     }
-    constexpr double airBelow = -1024.0; // the least number of Hounsfield that scanners store
+    constexpr double airBelow = -1024.0; // the smallest number of Hounsfield that scanners store
     constexpr double ranges = 4.0;
     constexpr double rangesOfHounsfield = 0.125;
     const double gap = least - this->Fill;

@@ -35,7 +35,7 @@ struct ReadingSource::Shared
 
   std::mutex Guard;
   Messenger* Messages = nullptr;
-  std::uint64_t Round = 0; ///< grows when all is given up
+  std::uint64_t Round = 0; ///< grows when all reads are abandoned
   std::vector<Done> Arrived;
 
   bool IsWanted(std::uint64_t round)

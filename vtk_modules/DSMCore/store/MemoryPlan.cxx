@@ -133,7 +133,7 @@ std::uint64_t MemoryPlan::GetNeed(MemoryOrganization organization, int rank) con
 
 std::uint64_t MemoryPlan::GetLeastRoom(const Sums& sums) const
 {
-  const bool alone = this->Budgets.size() == 1; // nobody is to be answered
+  const bool alone = this->Budgets.size() == 1; // no rank requests blocks
   return sums.Largest * (alone ? 1 : LeastRoom + (this->AnyFromSource ? 1 : 0));
 }
 

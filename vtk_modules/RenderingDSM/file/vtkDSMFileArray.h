@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMFileArray
- * @brief an array whose values are in a file, and are read on demand
+ * @brief   an array whose values are in a file, and are read on demand
  *
  * Every filter that asks for values one by one, or tuple by tuple, works, and reads only the chunks that it needs;
  * they stay in a cache that all such arrays share. A filter that asks for the memory of the values (GetVoidPointer)

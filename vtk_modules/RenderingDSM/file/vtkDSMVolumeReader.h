@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMVolumeReader
- * @brief   image data, or a rectilinear grid, whose values stay in their file until somebody asks for them
+ * @brief   image data, or a rectilinear grid, whose values stay in their file and are read on demand
  *
  * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced.
  * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
