@@ -71,7 +71,7 @@ public:
   ///@}
 
   /**
-   * So many colors take turns where ParaView's array vtkBlockColors colors the blocks, as it numbers them.
+   * Number of colors that take turns if ParaView's array vtkBlockColors colors the blocks, as it numbers them.
    */
   void SetBlockColorsDistinctValues(int number);
   /**

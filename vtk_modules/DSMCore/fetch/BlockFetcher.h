@@ -112,7 +112,7 @@ protected:
   {
     return block.From->GetDirectory().GetOwner(block.Id) == this->Messages.GetRank();
   }
-  /// That source; null when the block never leaves memory.
+  /// Returns the source that can bring a block again; null if the block never leaves memory.
   virtual BlockSource* FindSource(const BlockWant& block) const = 0;
   /// Throws Error when a frame cannot begin. No lock.
   virtual void CheckBudget() const = 0;
@@ -128,7 +128,7 @@ protected:
   /// Brings a block that has come where it belongs, within the room set aside. `memory` has its bytes, or is
   /// null where these are a message's. No lock. When it throws, nothing has changed.
   virtual void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) = 0;
-  /// So that the next Show does not fail. May throw std::bad_alloc.
+  /// Allocates what the next Show needs, which cannot fail then. May throw std::bad_alloc.
   virtual void PrepareToShow() {}
   /// Lets workers have the block that has landed, with what Land made of its memory, which may be kept. Does
   /// not fail.
