@@ -5,10 +5,10 @@
  *
  * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced.
  * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
- * values. When it has executed, no value has been read, but for the arrays' ranges, which are found once for a file
- * and kept in the user's cache directory: the arrays of its output (vtkDSMFileArray) read what filters and mappers
- * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask for
- * different pieces get those.
+ * values. It reads no values when it executes, except once for the arrays' ranges, which are kept in the user's
+ * cache directory. The arrays of its output (vtkDSMFileArray) read the values that filters and mappers request. The
+ * values that were read last stay in a cache that all readers of the process share. Ranks that ask for different
+ * pieces get those.
  */
 
 #ifndef vtkDSMVolumeReader_h
@@ -40,8 +40,8 @@ public:
 
   ///@{
   /**
-   * The file; of Zarr, its folder, or a file of metadata in it. With several files, each is a time step, in the
-   * order in which they are added: all have the same arrays, samples and chunks. GetFileName is the first.
+   * The file; for Zarr, its folder, or a file of metadata in it. Several files are time steps, in the order in
+   * which they are added; all must have the same arrays, samples and chunks. GetFileName returns the first.
    */
   virtual void SetFileName(const char* name);
   virtual void AddFileName(const char* name);
@@ -57,7 +57,7 @@ public:
 
   ///@{
   /**
-   * The arrays to have; all by default.
+   * The arrays to read; all by default.
    */
   virtual vtkDataArraySelection* GetPointDataArraySelection();
   virtual vtkDataArraySelection* GetCellDataArraySelection();
@@ -72,8 +72,8 @@ public:
   ///@}
 
   /**
-   * The file's levels of detail, each in a line, such as "1: 256 x 256 x 128", which has the points along x, y and z.
-   * Opens those that are not open; empty where the file cannot be opened.
+   * The file's levels of detail, each in a line with the points along x, y and z, such as "1: 256 x 256 x 128".
+   * Opens levels that are not open yet; empty if the file cannot be opened.
    */
   virtual const char* GetLevelNames();
 
@@ -88,8 +88,8 @@ public:
 
   ///@{
   /**
-   * Distance of samples along x, y and z, instead of what the file says; 0 (the default): as it says. With OwnOrigin
-   * (false by default), the position of the first sample, likewise.
+   * Distance of samples along x, y and z, which replaces the file's; 0 (the default) keeps the file's. If OwnOrigin
+   * is true (false by default), Origin replaces the position of the first sample, likewise.
    */
   vtkSetVector3Macro(Spacing, double);
   vtkGetVector3Macro(Spacing, double);
@@ -134,16 +134,16 @@ public:
 
   ///@{
   /**
-   * MiB of values of files that stay in memory, in the whole process; 128 by default. While pictures are made of a
-   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the
-   * memory; or what four need, and at most half of it.
+   * Limit in MiB of the values of files that stay in memory, in the whole process; 128 by default. While a file is
+   * traced, the limit is raised to the chunks that eight bricks need together, up to an eighth of the memory. If
+   * the chunks of four bricks exceed that, it is raised to these, up to half of the memory.
    */
   static void SetCacheMebibytes(int size);
   static int GetCacheMebibytes();
   ///@}
 
   /**
-   * Bytes of values that were read from files so far, in the whole process, but for those of ranges.
+   * Returns the bytes of values that were read from files so far, in the whole process, without those for ranges.
    */
   static vtkTypeUInt64 GetBytesRead();
 
