@@ -18,8 +18,8 @@
 namespace rt
 {
 
-/// Reads what is published, on whichever rank and in whichever store it is. For the thread that FrameRenderer::Read calls with
-/// one; waits for bricks.
+/// Reads what is published, on whichever rank and in whichever store it is. For the thread that FrameRenderer::Read
+/// calls with one; waits for bricks.
 class FieldReader
 {
 public:
@@ -40,8 +40,8 @@ public:
     dsm::FunctionRef<void(dsm::BlockId, const Brick&)> visit) = 0;
 
   ///@{
-  /// How fast values grow at points in the field's world space, on each axis of its index space (LatticeMedia, LevelMedia);
-  /// 0 where there are none.
+  /// How fast values grow at points in the field's world space, on each axis of its index space (LatticeMedia,
+  /// LevelMedia); 0 where there are none.
   virtual std::vector<glm::dvec3> FindGradients(
     const LatticeField& field, const std::vector<glm::dvec3>& points) = 0;
   virtual std::vector<glm::dvec3> FindGradients(

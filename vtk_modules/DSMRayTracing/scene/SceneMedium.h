@@ -27,8 +27,8 @@ using LevelSum = SumOf<LevelField>;
 using SceneMedium =
   std::variant<LatticeMedium, LatticeExtremum, LatticeSum, LevelMedium, LevelExtremum, LevelSum>;
 
-/// Whether a kind of medium lies in layers along a ray, between which other things may be. The
-/// others show a single value of each ray.
+/// True for a kind of medium that lies in layers along a ray, with other objects between them. The others show a
+/// single value for each ray.
 template <class Kind>
 struct IsLayered : std::false_type
 {

@@ -9,7 +9,8 @@
 #include <cstdint>
 #include <string_view>
 
-/// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec 'x' ".
+/// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec
+/// 'x' ".
 namespace vol::CodecJson
 {
 

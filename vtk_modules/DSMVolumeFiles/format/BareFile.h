@@ -38,15 +38,16 @@ struct BareValues
   std::vector<std::string> Warnings; ///< VolumeFile::GetWarnings
 };
 
-/// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at
-/// most 1 MiB. Compressed values are unpacked once (UnpackOnce), unless OpenOptions::OnlyHeader is set. Throws dsm::Error
-/// when a file cannot be opened or is too short.
+/// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at most 1 MiB. Compressed
+/// values are unpacked once (UnpackOnce), unless OpenOptions::OnlyHeader is set. Throws dsm::Error when a file
+/// cannot be opened or is too short.
 std::shared_ptr<VolumeFile> OpenBareFile(const std::string& path, const BareValues& values,
   const FileGeometry& geometry, const OpenOptions& options);
 
-/// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
+/// Cuts `samples` of so many bytes each into boxes of at most 1 MiB: samples that are close in space are in few of
+/// them.
 ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes);
-/// As rows that follow one another, or planes when a plane is small.
+/// Cuts them into rows that follow one another, or planes if a plane is small.
 ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes);
 
 } // namespace vol

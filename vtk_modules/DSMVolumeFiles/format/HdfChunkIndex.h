@@ -21,11 +21,12 @@ struct HdfChunk
 };
 
 /// Reads the index in which an HDF5 file keeps where a dataset's chunks are, of each kind that its library writes
-/// ("HDF5 File Format Specification", III.A.1 and III.A.2, and appendix C; version 3). The library itself (1.10, 1.12) goes
-/// through the whole index for each chunk that it is asked for, which takes hours where there are a million.
+/// ("HDF5 File Format Specification", III.A.1 and III.A.2, and appendix C; version 3). The library itself (1.10,
+/// 1.12) goes through the whole index for each chunk that it is asked for, which takes hours where there are a
+/// million.
 ///
-/// Nothing of the file is trusted: no byte is read twice, so that nodes that lead to one another end; every block has to
-/// have its signature, version, size and, in the newer kinds, its checksum.
+/// Nothing of the file is trusted: no byte is read twice, so that nodes that lead to one another end; every block
+/// has to have its signature, version, size and, in the newer kinds, its checksum.
 class HdfChunkIndex
 {
 public:

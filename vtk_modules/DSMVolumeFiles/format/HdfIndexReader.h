@@ -44,7 +44,7 @@ public:
   /// `entryBytes` is 8 for chunks that are not filtered.
   static bool IsEntry(bool isFiltered, std::uint64_t entryBytes);
   HdfChunk GetChunk(const HdfBytes& block, std::size_t place, std::size_t entryBytes) const;
-  /// So many entries of numbered chunks, from `number` on.
+  /// Adds `count` entries of numbered chunks, from `number` on.
   bool AddEntries(const HdfBytes& block, std::size_t place, std::size_t entryBytes,
     std::uint64_t number, std::uint64_t count);
 

@@ -29,8 +29,8 @@ struct ValuePart
 class ValueBytes
 {
 public:
-  /// `partBytes`: bytes of each part, which the files were found to have. Throws dsm::Error when the first file cannot be
-  /// opened, or is another one now.
+  /// `partBytes`: bytes of each part, which the files were found to have. Throws dsm::Error when the first file
+  /// cannot be opened, or is another one now.
   ValueBytes(std::vector<ValuePart> parts, std::uint64_t partBytes);
 
   /// As PositionedFile::Read; offsets count from the first value, and pieces may lie in several files.

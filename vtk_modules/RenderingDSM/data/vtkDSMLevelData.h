@@ -33,16 +33,16 @@ public:
   /// A cell of a part.
   struct Cell
   {
-    int Part = -1; ///< index into vtkDSMLevelData::GetParts; -1: the part is no leaf of this rank
+    int Part = -1; ///< index into vtkDSMLevelData::GetParts; -1: not a leaf of this rank
     vtkIdType Id = -1;
   };
   /// Reads which cells of this rank's parts are the cells of cube `number` of GetCubes: Edge^3, x fastest.
   virtual std::vector<Cell> ReadCells(std::size_t number) const = 0;
 };
 
-/// Parts of a dataset whose cells are of several sizes that lie within one another, with one coarsest level in common,
-/// distributed over the ranks in any way. Keeps the parts alive, without a copy. Methods documented as collective need every
-/// rank. Failures are dsm::Error, the same on every rank.
+/// Parts of a dataset whose cells are of several sizes that lie within one another, with one coarsest level in
+/// common, distributed over the ranks in any way. Keeps the parts alive, without a copy. Methods documented as
+/// collective need every rank. Failures are dsm::Error, the same on every rank.
 class vtkDSMLevelData
 {
 public:
@@ -63,8 +63,8 @@ public:
     vtkDSMBlockLook Look;
   };
 
-  /// Collective. `parts`: this rank's. AMR is one; hyper tree grids are one where their roots are on one lattice and do not
-  /// overlap.
+  /// Collective. `parts`: this rank's. AMR is one; hyper tree grids are one where their roots are on one lattice
+  /// and do not overlap.
   static std::vector<std::unique_ptr<vtkDSMLevelData>> Create(
     const std::shared_ptr<vtkDSMRankGroup>& group, const Parts& parts);
   virtual ~vtkDSMLevelData();
@@ -87,8 +87,8 @@ public:
   }
   /// Local: this rank's parts.
   const std::vector<vtkSmartPointer<vtkDataObject>>& GetParts() const { return this->Own; }
-  /// Collective. Cuts an array into bricks: `infos` is FindArrays of all ranks. Null where no part has it. An array of points
-  /// that the parts do not have is the array of cells of that name.
+  /// Collective. Cuts an array into bricks: `infos` is FindArrays of all ranks. Null where no part has it. An array
+  /// of points that the parts do not have is the array of cells of that name.
   std::shared_ptr<const bricks::LevelVoxels> Publish(const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos,
     const std::function<void(double)>& progress) const;

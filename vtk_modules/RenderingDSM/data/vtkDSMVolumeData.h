@@ -25,9 +25,10 @@
 class vtkDataObject;
 class vtkDataSet;
 
-/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, as lattices and as levels, with its
-/// arrays as fields of bricks. A part is a lattice, or one of the level data: lattices are numbered first. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank without
-/// data takes part. Failures are dsm::Error, the same on every rank.
+/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, as lattices and as
+/// levels, with its arrays as fields of bricks. A part is a lattice, or one of the level data: lattices are
+/// numbered first. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank
+/// without data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
 public:
@@ -75,10 +76,10 @@ public:
   /// Which arrays are to be shown, of those that there are.
   using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
 
-  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset of any
-  /// but AMR, whose other blocks are left out, or null; `looks` are of its blocks.
-  /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
-  /// that the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
+  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite
+  /// dataset of any but AMR, whose other blocks are left out, or null; `looks` are of its blocks. Blocks that
+  /// continue one another are taken for one volume, where the arrays that `choose` names agree at the points that
+  /// the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
     vtkDataObject* original, const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
@@ -120,8 +121,8 @@ public:
     return images;
   }
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
-  /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
-  /// the same again.
+  /// Local, reads the data. Returns a hash of all that this rank's part of a field depends on: equal only if
+  /// Publish would make the same again.
   std::uint64_t HashContent(const Choice& choice) const;
   /// Returns the bounds of all ranks' pieces; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
@@ -137,8 +138,9 @@ public:
   /// so.
   bool MayTakeOver(const std::shared_ptr<const Publication>& old) const;
 
-  /// Collective. The coarser levels of what was published for the same choice; none where a lattice is in no file, or in
-  /// one without. Room for their tables is what they take: they give way to nothing, and nothing gives way to them.
+  /// Collective. The coarser levels of what was published for the same choice; none where a lattice is in no file,
+  /// or in one without. Room for their tables is what they take: they give way to nothing, and nothing gives way to
+  /// them.
   std::shared_ptr<const Coarser> PublishCoarser(const Publication& finest, const Choice& choice,
     const std::string& purpose, const std::function<void(double)>& progress) const;
 
@@ -151,7 +153,7 @@ private:
   static void AddVolumes(vtkDataObject* data, std::vector<vtkSmartPointer<vtkDataObject>>& volumes);
   /// Distributes the coordinates of all rectilinear pieces, one piece and axis after the other.
   void SetCoordinates(const std::vector<double>& all);
-  /// Collective: takes apart what is no one volume.
+  /// Collective: takes apart blocks that do not form one volume.
   void SeparateBlocks(const std::vector<Choice>& shown);
   /// Local: a piece's image, if it is this rank's; else null.
   vtkDataSet* FindOwn(const bricks::LatticePlan::Member& member) const;
@@ -180,7 +182,7 @@ private:
   /// Local. A lattice's field without its bricks; null where no piece has the array.
   std::shared_ptr<bricks::VoxelField> CreateField(std::size_t lattice, const Choice& choice,
     const std::string& purpose, const std::vector<vtkDSMImageArrays::Info>& infos) const;
-  /// Local. Whether some cells of a lattice have no value in an array, whatever the values are.
+  /// Local. Returns whether some cells of a lattice have no value in an array, whatever the values are.
   bool HasGaps(std::size_t lattice, const std::vector<vtkDSMImageArrays::Info>& infos) const;
   /// Local. This rank's pieces of a lattice.
   std::vector<std::shared_ptr<const bricks::VoxelSource>> CreateSources(

@@ -15,7 +15,7 @@
 namespace rt
 {
 
-/// Tells of a range of values whether any is above a limit, all times a sign: what BeamDescent asks.
+/// Returns whether a range of values has any above a limit, all times a sign, for BeamDescent.
 class ExtremumPredicate
 {
 public:

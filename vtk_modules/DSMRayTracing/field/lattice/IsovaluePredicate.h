@@ -11,8 +11,8 @@
 namespace rt
 {
 
-/// Tells of a range of values whether one of some isovalues may be within: what walks over macrocells
-/// (BeamDescent, BrickWalk) and over hierarchies of boxes (ChildrenInRange) ask for isosurfaces.
+/// Returns whether one of some isovalues may be within a range of values: for walks over macrocells (BeamDescent,
+/// BrickWalk) and over hierarchies of boxes (ChildrenInRange) that look for isosurfaces.
 class IsovaluePredicate
 {
 public:

@@ -42,8 +42,8 @@ public:
     return wanted;
   }
 
-  /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in cells that
-  /// are there, whatever the values of these.
+  /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in
+  /// cells that are there, whatever the values of these.
   RayMask FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     double* values) const;
 

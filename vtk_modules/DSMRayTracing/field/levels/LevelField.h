@@ -28,9 +28,9 @@ template <class Store>
 class LevelSurfaces;
 class LevelSections;
 
-/// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function, see
-/// bricks::LevelNodes. A kind of field: IsosurfaceOf says what one has to offer. A Place is in the index space of its brick's
-/// level, all else in that of level 0.
+/// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function,
+/// see bricks::LevelNodes. A kind of field: IsosurfaceOf says what one has to offer. A Place is in the index space
+/// of its brick's level, all else in that of level 0.
 struct LevelField
 {
   using Values = bricks::LevelVoxels;
@@ -70,7 +70,8 @@ struct LevelField
   {
     return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
   }
-  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the index space.
+  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the
+  /// index space.
   double GetGrowth(const glm::dvec3& gradient) const;
   /// A brick that has a place (world space) in its box, of the finest level of such; of no segment, where none is.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;

@@ -16,8 +16,9 @@ namespace rt
 
 struct LevelField;
 
-/// The sections of planes through levels: where rays meet them within the bounds of all cells. Reads no bricks, so a place is
-/// only a point, in the index space of level 0, until LevelSampler::FindPlaces finds its cell. Any number of threads may ask.
+/// The sections of planes through levels: where rays meet them within the bounds of all cells. Reads no bricks, so
+/// a place is only a point, in the index space of level 0, until LevelSampler::FindPlaces finds its cell. Any
+/// number of threads may ask.
 class LevelSections
 {
 public:
