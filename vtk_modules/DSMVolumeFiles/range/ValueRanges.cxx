@@ -264,7 +264,7 @@ std::optional<ValueRanges> FindRanges(const std::shared_ptr<const VolumeFile>& f
 namespace
 {
 
-/// Those of all of the array, if the file tells them.
+/// Returns the ranges of all of the array, if the file has them.
 std::optional<ValueRanges> ReadOwn(const VolumeFile& file, std::size_t array, int step)
 {
   ValueRanges ranges(file.GetArrays()[array].Components);

@@ -156,7 +156,7 @@ std::shared_ptr<const bricks::LevelVoxels> vtkDSMLevelData::Publish(const Choice
     if (info.IsUsable())
     {
       isThere = true;
-      // Means of whole numbers are none; a float holds those of 16 bits.
+      // Averages of integers are not integers; a float holds those of 16 bits.
       const bool fits =
         info.Type == bricks::ScalarType::Float32 || bricks::GetBytes(info.Type) <= 2;
       type = fits ? type : bricks::ScalarType::Float64;

@@ -381,8 +381,8 @@ void vtkDSMVolumeData::PublishLattice(Publication& published, std::size_t number
   }
   published.Bricks.back() = field;
   const std::string what = "the " + purpose + " '" + choice.Name + "'";
-  // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it, and so are means of
-  // cells of which some are missing.
+  // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it, and so are
+  // means of cells of which some are missing.
   const bricks::ValidValues& valid =
     infos[this->Plan.GetLattices()[number].Members.front().Piece].Valid;
   const bool canBeRead = !this->HasGaps(number, infos) && !field->Lattice.IsOfCells() &&

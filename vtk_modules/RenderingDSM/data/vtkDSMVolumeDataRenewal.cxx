@@ -23,7 +23,7 @@ bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old
       return old->Parts[lattice].Source ? store.MayRefresh(field->Segment)
                                         : store.MayUpdate(field->Segment);
     };
-    // Bricks has it, too; nobody else may.
+    // Bricks has a reference, too; no other object may have one.
     if (old->Bricks[lattice] &&
       (field.use_count() != 2 || !mayChange() ||
         field->Lattice.GetPoints() != this->Plan.GetLattices()[lattice].Points))
