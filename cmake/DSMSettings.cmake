@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Reads the table of settings, and makes from it what needs them. A program that includes this has, for each setting NAME,
-# the variables DSM_NAME_LABEL and so on, and all names in DSM_SETTINGS.
+# Reads the table of settings, and makes from it what needs them. A program that includes this has, for each setting
+# NAME, the variables DSM_NAME_LABEL and so on, and all names in DSM_SETTINGS.
 #
 # dsm_setting(NAME OWNER owner TYPE type ... TEXT tooltip)
 #   OWNER    scene: one value for all that a view shows; ranks: one for all views; dataset: each has its own
@@ -26,6 +26,7 @@ function (dsm_setting name)
   if (arg_TEXT MATCHES ";" OR NOT arg_OWNER MATCHES "^(scene|ranks|dataset)$")
     message(FATAL_ERROR "Setting ${name}: the text has a semicolon, or the owner is unknown.")
   endif ()
+  string(REGEX REPLACE "[ \n]+" " " arg_TEXT "${arg_TEXT}")
   foreach (key IN LISTS keys lists)
     set(DSM_${name}_${key} "${arg_${key}}" PARENT_SCOPE)
   endforeach ()
@@ -333,7 +334,8 @@ include("${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/frame/counters.cmake")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
   "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/frame/counters.cmake")
 
-# Writes docs/properties.md, from its template, to a file, except for the rows that tests/docs/make_properties.py adds from xml/.
+# Writes docs/properties.md, from its template, to a file, except for the rows that tests/docs/make_properties.py adds
+# from xml/.
 function (dsm_write_properties_document file)
   foreach (name IN LISTS DSM_SETTINGS)
     string(TOUPPER "${DSM_${name}_OWNER}" owner)

@@ -76,8 +76,8 @@ build_project() {
   if [ "${1:-}" = --with-tests ] || builds_tests; then tests=ON; fi
   if [ ! -f "$build/build.ninja" ] || { [ $tests = ON ] && ! builds_tests; }; then
     say "Configuring ..."
-    cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      -DDSM_BUILD_TESTING=$tests -DDSM_WARNINGS_AS_ERRORS="${DSM_WARNINGS_AS_ERRORS:-OFF}" >"$build/configure.log" 2>&1 || {
+    cmake -S "$project" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DDSM_BUILD_TESTING=$tests \
+      -DDSM_WARNINGS_AS_ERRORS="${DSM_WARNINGS_AS_ERRORS:-OFF}" >"$build/configure.log" 2>&1 || {
       tail -n 30 "$build/configure.log" >&2
       rm -f "$build/build.ninja"
       fail "cannot configure the project; the complete log is $build/configure.log"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes gui_plugin.png and gui_isosurface.png, pictures of ParaView's application, and gui_isosurface.txt, the labels of
-the properties that the panel has below Representation:
+"""Makes gui_plugin.png and gui_isosurface.png, pictures of ParaView's application, and gui_isosurface.txt, the labels
+of the properties that the panel has below Representation:
 
     python3 docs/images/gui.py build/lib/DSMRayTracer/DSMRayTracer.so
 
@@ -94,7 +94,8 @@ def take_picture(folder, name, steps):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         read, told = os.pipe()
-        screen = subprocess.Popen(["Xvfb", "-displayfd", str(told), "-fbdir", folder, "-noreset", "-nocursor", "-screen", "0",
+        screen = subprocess.Popen(["Xvfb", "-displayfd", str(told), "-fbdir", folder, "-noreset", "-nocursor",
+                                   "-screen", "0",
                                    f"{SIZE[0]}x{SIZE[1]}x24"], pass_fds=[told])
         with os.fdopen(read) as lines:
             os.environ.update(DISPLAY=":" + lines.readline().strip(), HOME=folder)
@@ -106,7 +107,8 @@ def main():
             load = LOAD + [(MANAGER + "/" + file_dialog.get_name("paraview"), "filesSelected", PLUGIN)]
             take_picture(folder, "gui_plugin.png", load)
             take_picture(folder, "gui_isosurface.png", load + SHOW)
-            subprocess.run(["pvpython", "--force-offscreen-rendering", os.path.join(HERE, "../../tests/paraview/run.py"),
+            subprocess.run(["pvpython", "--force-offscreen-rendering",
+                            os.path.join(HERE, "../../tests/paraview/run.py"),
                             "TestPanel.py", PLUGIN, folder], env={**os.environ, "DSM_TEST_PANEL": LABELS}, check=True)
         finally:
             for process in (manager, screen):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes volume.png, a volume as ParaView shows it and ray traced, with a surface inside, and volume_light.png, in light:
+"""Makes volume.png, a volume as ParaView shows it and ray traced, with a surface inside, and volume_light.png, in
+light:
     xvfb-run -a -s "-noreset -screen 0 1280x1024x24" pvbatch volume.py PLUGIN FOLDER"""
 
 import os
@@ -22,7 +23,8 @@ display.SetRepresentationType("DSM Volume")
 simple.Render(view)
 opacity = simple.GetOpacityTransferFunction("f")
 opacity.Points = [0.0, 0.0, 0.5, 0.0, 0.35, 0.0, 0.5, 0.0, 0.5, 0.25, 0.5, 0.0, 0.6, 0.0, 0.5, 0.0, 1.4, 0.0, 0.5, 0.0]
-cone = simple.Show(simple.Cone(Center=[0.0, 0.0, 0.0], Direction=[0.3, 1.0, 0.2], Height=1.2, Radius=0.4, Resolution=60), view)
+cone = simple.Show(simple.Cone(Center=[0.0, 0.0, 0.0], Direction=[0.3, 1.0, 0.2], Height=1.2, Radius=0.4,
+                               Resolution=60), view)
 cone.DiffuseColor = cone.AmbientColor = [0.9, 0.6, 0.2]
 simple.ResetCamera(view)
 camera = view.GetActiveCamera()

@@ -40,7 +40,7 @@ pictures.Writer.ImageResolution = [400, 400]
 
 
 def catalyst_finalize():
-    """Tells how often bricks were made. On steps where an array is what it was, its bricks are kept."""
+    """Prints how often bricks were made. If a step does not change an array, its bricks are kept."""
     display.SMProxy.UpdatePropertyInformation()
     ranks = json.loads(display.SMProxy.GetProperty("DSMStatistics").GetElement(0))
     if servermanager.vtkProcessModule.GetProcessModule().GetPartitionId() == 0:

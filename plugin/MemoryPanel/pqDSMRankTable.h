@@ -6,8 +6,8 @@
 #include <QJsonArray>          // for ivars
 
 /**
- * What each rank holds and did for a frame: a row for each rank, and below them their sum. Made of the JSON of
- * vtkDSMStatistics, whose keys are the columns' contents. Memory is in MiB.
+ * Table of what each rank holds and did for a frame: a row for each rank, and below them their sum. It is made from
+ * the JSON of vtkDSMStatistics, whose keys are the columns' contents. Memory is in MiB.
  */
 class pqDSMRankTable : public QAbstractTableModel
 {

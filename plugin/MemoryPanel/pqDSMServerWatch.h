@@ -6,9 +6,9 @@
 
 class pqServer;
 
-/// Makes a server that the application connects to load DSMRayTracer, by name, if it is on the server's
-/// plugin search paths: ParaView itself does this only for the first one of --plugins. If the plugin is not
-/// there, nothing happens, and ParaView asks for it. The application's thread.
+/// Makes a server that the application connects to load DSMRayTracer, by name, if it is on the server's plugin
+/// search paths: ParaView itself does this only for the first one of --plugins. If the plugin is missing there,
+/// nothing happens, and ParaView asks for it. The application's thread.
 class pqDSMServerWatch : public QObject
 {
   Q_OBJECT

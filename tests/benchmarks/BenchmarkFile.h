@@ -8,10 +8,10 @@
 
 #include <string>
 
-/// Publishes the first array of a volume file that vol::OpenVolumeFile opens (one component, on points): its
-/// bricks come from the file when rays meet them. A brick edge of 0 is the renderer's own. What they hold is taken
-/// from the file's index, else found by reading it once; what of that is in memory is forgotten. Returns the object without isovalues. Collective; throws
-/// dsm::Error.
+/// Publishes the first array of a volume file that vol::OpenVolumeFile opens (one component, on points): its bricks
+/// come from the file when rays meet them. A brick edge of 0 is the renderer's own. What they hold is taken from
+/// the file's index, else found by reading it once; what of that is in memory is forgotten. Returns the object
+/// without isovalues. Collective; throws dsm::Error.
 rt::LatticeIsosurface PublishBenchmarkFile(
   const std::string& path, int brickEdge, dsm::BlockStore& store, dsm::Messenger& messenger);
 

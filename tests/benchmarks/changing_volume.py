@@ -161,7 +161,8 @@ def write_files(build, folder, edge, steps, share):
         with h5py.File(plain, "w") as file:
             file["f"] = (values + chosen * numpy.float32(0.0005 * step)).astype("f4")
         paths.append(os.path.join(folder, f"step_{step:03}.h5"))
-        subprocess.run([os.path.join(build, "bin", "dsm_convert"), plain, paths[-1], "--compression", "zstd", "--quiet"],
+        subprocess.run([os.path.join(build, "bin", "dsm_convert"), plain, paths[-1], "--compression", "zstd",
+                        "--quiet"],
                        check=True)
         os.remove(plain)
     return paths

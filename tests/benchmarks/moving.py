@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A drag of the camera over a volume in a file that nobody has read yet: frame times with and without coarser data while
-moving. Called as
+"""A drag of the camera over a volume in a file that nobody has read yet: frame times with and without coarser data
+while moving. Called as
     pvbatch moving.py PLUGIN FILE ISOVALUE [MEMORY...]
-FILE has levels (dsm_convert --levels); MEMORY in MiB of each rank. The system's own copy of the file is dropped first."""
+FILE has levels (dsm_convert --levels); MEMORY in MiB of each rank. The system's own copy of the file is dropped
+first."""
 
 import os
 import sys
@@ -56,5 +57,6 @@ for memory in MEMORIES:
     for coarser in (0, 1):
         seconds, levels, still = drag(memory, coarser)
         ordered = sorted(seconds)
-        print(f"{memory:5} {'on' if coarser else 'off':>8} {1e3 * ordered[FRAMES // 2]:6.0f}ms {1e3 * ordered[-1]:6.0f}ms "
+        print(f"{memory:5} {'on' if coarser else 'off':>8} {1e3 * ordered[FRAMES // 2]:6.0f}ms "
+              f"{1e3 * ordered[-1]:6.0f}ms "
               f"{sum(seconds):7.1f}s {still:7.2f}s  {''.join(map(str, levels))}", flush=True)

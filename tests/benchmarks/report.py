@@ -55,8 +55,8 @@ def main():
         return run_bench(options.bench, ranks, benchmark, **more)
 
     size = f"{options.samples}^3"
-    print(f"{datetime.date.today()}, version {find_version()}, {find_processor()}, {cores} cores. Volumes of {size} floats, "
-          "pictures of 512 x 512 pixels. Load of the machine at the start: "
+    print(f"{datetime.date.today()}, version {find_version()}, {find_processor()}, {cores} cores. Volumes of {size} "
+          "floats, pictures of 512 x 512 pixels. Load of the machine at the start: "
           f"{os.getloadavg()[0]:.1f}.\n")
 
     def rate(kind, store, **more):
@@ -71,7 +71,8 @@ def main():
                  for kind, medium in MEDIA.items()])
 
     def light(kind, **more):
-        return f"{measure(kind, options.samples, store='replicated', frames=4, repeat=2, **more)['frame_over_primary_frame']:.1f}"
+        result = measure(kind, options.samples, store="replicated", frames=4, repeat=2, **more)
+        return f"{result['frame_over_primary_frame']:.1f}"
 
     print_table("Time of a frame with light, over the frame without",
                 ("volume", "hard shadows", "1 occlusion ray", "both"),
@@ -88,22 +89,26 @@ def main():
             frames = result["frames"]
             rows.append((title, "" if cache == 1 else f"{100 * cache:.0f} %", f"{result['frames_per_second']:.1f}",
                          f"{(result['misses'] - result['joins']) / frames:.1f}", f"{100 * result['idle_part']:.1f} %"))
-    print_table(f"A session of turning, zooming and moving the isovalue: two ranks as separate hosts, mixing layer of {samples}^3",
+    print_table(f"A session of turning, zooming and moving the isovalue: two ranks as separate hosts, mixing layer "
+                f"of {samples}^3",
                 ("memory organization", "cache, of all bricks", "frames/s", "misses per frame", "threads idle"), rows)
 
     rows = []
     for title, name in EDGES:
-        result = measure("noisy sphere", 128, volume=f"sphere:128:{name}", isovalue=0.5 if name in ("float", "double") else 32,
+        result = measure("noisy sphere", 128, volume=f"sphere:128:{name}",
+                         isovalue=0.5 if name in ("float", "double") else 32,
                          store="replicated", frames=1)
         width = int(title[0])
-        rows.append((title, f"{result['brick_bytes'] / 1000:.0f} kB", f"{result['resident_bytes'] / (128 ** 3 * width):.2f}"))
+        rows.append((title, f"{result['brick_bytes'] / 1000:.0f} kB",
+                     f"{result['resident_bytes'] / (128 ** 3 * width):.2f}"))
     print_table("Bricks of a volume", ("samples", "bytes of a brick", "all bricks, over the volume's bytes"), rows)
 
     result = run_bench(options.bench, 1, "mesh", mesh="grid:708", threads=cores)
     order = result["orders"][0]
     rays = order["caches"][0]["frames_per_second"] * 512 * 512 / 1e6
     print_table("A mesh", ("triangles", "million primary rays/s", "bytes per triangle", "seconds to build the bricks"),
-                [(f"{result['triangles']:,}", f"{rays:.1f}", f"{order['bytes_per_triangle']:.1f}", f"{order['build_seconds']:.2f}")])
+                [(f"{result['triangles']:,}", f"{rays:.1f}", f"{order['bytes_per_triangle']:.1f}",
+                  f"{order['build_seconds']:.2f}")])
 
 
 if __name__ == "__main__":

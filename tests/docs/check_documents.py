@@ -31,8 +31,8 @@ HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
 LENGTHS = {"README.md": 120, "docs/performance.md": 100, "docs/limits.md": 80, "docs/architecture.md": 200}
 BRITISH = re.compile(
     r"colour|neighbour|behaviour|honour|favour|flavour|\bcentre|\bmetre|\bgrey|licence|catalogue|modell|labell|travell"
-    r"|(organ|optim|recogn|normal|initial|synchron|real|visual|parallel|serial|minim|maxim|general|final)is(e|ing|ation)"
-    r"|analyse\b", re.IGNORECASE)
+    r"|(organ|optim|recogn|normal|initial|synchron|real|visual|parallel|serial|minim|maxim|general|final)"
+    r"is(e|ing|ation)|analyse\b", re.IGNORECASE)
 
 
 class Block:

@@ -30,5 +30,6 @@ for header in (*(source / "vtk_modules" / "RenderingDSM").rglob("*.h"), *made):
         brief = re.search(r"@brief\s+(.+)", text).group(1)
         page = html.unescape((pages / f"class{name}.html").read_text())
         assert " ".join(brief.split()) in " ".join(re.sub("<[^>]+>", "", page).split()), f"{name}: {brief}"
-assert {"vtkDSMScene", "vtkDSMLightOptions", "vtkDSMMemoryOptions", "vtkDSMVolumeMapper", "vtkDSMPolyDataMapper"} <= names, names
+assert {"vtkDSMScene", "vtkDSMLightOptions", "vtkDSMMemoryOptions", "vtkDSMVolumeMapper",
+        "vtkDSMPolyDataMapper"} <= names, names
 print(f"{len(names)} classes have their pages: {' '.join(sorted(names))}")

@@ -23,7 +23,8 @@ TABLES = {
     "meshes": r"DSMShowEdges|DSMLineRadius|DSMPointRadius|DSMRadiusArray",
     "results": r"DSM(FrameTime|Statistics|StatisticsSummary|Samples)",
 }
-FROM_DATA = {"mid": "center of the data", "data_bounds": "bounds of the data", "approximate_cell_length": "size of a cell"}
+FROM_DATA = {"mid": "center of the data", "data_bounds": "bounds of the data",
+             "approximate_cell_length": "size of a cell"}
 
 
 def read_properties():
@@ -33,7 +34,8 @@ def read_properties():
         text = (PROJECT / "xml" / name).read_text(encoding="utf-8")
         text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
         for element in ElementTree.fromstring(f"<all>{text}</all>").iter():
-            if element.tag.endswith("Property") and "name" in element.attrib and element.find("Documentation") is not None:
+            documentation = element.find("Documentation")
+            if element.tag.endswith("Property") and "name" in element.attrib and documentation is not None:
                 properties.setdefault(element.attrib["name"], element)
     return properties
 
@@ -96,7 +98,8 @@ def main():
         kept.read_text(encoding="utf-8").splitlines(), page.splitlines(), str(kept), str(OUTPUT), lineterm=""))
     print("\n".join(difference) or f"ok: {kept} is up to date")
     unlisted = [name for name in properties
-                if name.startswith("DSM") and f"`{name}`" not in page and not re.search(r"Slice[YZ]|SlicePoints|Suggested", name)]
+                if name.startswith("DSM") and f"`{name}`" not in page
+                and not re.search(r"Slice[YZ]|SlicePoints|Suggested", name)]
     print("".join(f"{name} is in no table\n" for name in unlisted), end="")
     sys.exit(1 if difference or unlisted else 0)
 

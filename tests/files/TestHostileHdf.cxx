@@ -252,8 +252,8 @@ herr_t ConvertForOthers(
   return data->command == H5T_CONV_CONV ? -1 : 0;
 }
 
-/// Sizes in the heap of texts and references, which the library follows wherever they lead. Other code in the process may have
-/// conversions of its own.
+/// Sizes in the heap of texts and references, which the library follows wherever they lead. Other code in the
+/// process may have conversions of its own.
 TEST(HostileHdf, DamagedHeapsAreRefused)
 {
   const HdfHandle anyList(H5Tvlen_create(H5T_NATIVE_CHAR), &H5Tclose);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """While the camera moves over a volume whose bricks are not in memory, a coarser level of its file stands in, where
-the user wants that; every other picture is of the finest, bit for bit. Called as run.py does, with dsm_convert, a folder
-for files and a Python behind the other arguments."""
+the user wants that; every other picture is of the finest, bit for bit. Called as run.py does, with dsm_convert, a
+folder for files and a Python behind the other arguments."""
 
 import subprocess
 
@@ -24,7 +24,8 @@ values = numpy.sin(21 * x) * numpy.cos(19 * y) + numpy.sin(20 * z + 3 * x)
 values.astype(numpy.float32).tofile(path + ".raw")
 environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI", "PMIX"))}
 # Compressed: what is not comes too soon.
-subprocess.run([CONVERT, "--quiet", "--compression", "deflate", "--levels", "all", "--raw-size", f"{EDGE},{EDGE},{EDGE}",
+subprocess.run([CONVERT, "--quiet", "--compression", "deflate", "--levels", "all", "--raw-size",
+                f"{EDGE},{EDGE},{EDGE}",
                 "--raw-type", "float32", "--spacing", f"{1 / EDGE},{1 / EDGE},{1 / EDGE}", path + ".raw",
                 path + ".vtkhdf"], check=True, timeout=100, env=environment)
 os.remove(path + ".raw")
@@ -134,7 +135,8 @@ for number, place in enumerate(((0.0, 0.0, 1.0), (0.3, 0.5, 1.0))):
     cached = sum(row["BytesCached"] for row in get_rows(display))
     fetched, before = (cached - before) // BRICK_BYTES, cached
     corners = numpy.arange(-(-(EDGE - 1) // 16)) * 16 / EDGE
-    heights = [0.2 * (corners[None, None, :] - 0.5 + c % 2 * 16 / EDGE) - 0.3 * (corners[None, :, None] - 0.5 + c // 2 % 2 * 16 / EDGE)
+    heights = [0.2 * (corners[None, None, :] - 0.5 + c % 2 * 16 / EDGE)
+               - 0.3 * (corners[None, :, None] - 0.5 + c // 2 % 2 * 16 / EDGE)
                + (corners[:, None, None] - 0.5 + c // 4 * 16 / EDGE) for c in range(8)]
     crossed = len(corners) ** 2 if number == 0 else ((numpy.min(heights, 0) <= 0) & (numpy.max(heights, 0) >= 0)).sum()
     check(0.5 * crossed < fetched <= 2 * crossed, f"{fetched} bricks are fetched of a slice through {crossed}")

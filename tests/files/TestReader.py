@@ -102,7 +102,8 @@ check(source.GetDataInformation().GetBounds() == (5, 99, 6, 123, 7, 147), "ball.
 simple.Delete(source)
 
 # Depths lie where ParaView's own reader has them.
-theirs = simple.NetCDFReader(FileName=[os.path.join(FILES, "ocean.nc")], Dimensions="(deptht, nav_lat, nav_lon)", SphericalCoordinates=0)
+theirs = simple.NetCDFReader(FileName=[os.path.join(FILES, "ocean.nc")], Dimensions="(deptht, nav_lat, nav_lon)",
+                             SphericalCoordinates=0)
 ours = simple.DSMVolumeReader(FileName=os.path.join(FILES, "ocean.nc"))
 with Messages() as messages:
     bounds = [source.GetDataInformation().GetBounds() for source in (theirs, ours) if source.UpdatePipeline() is None]
@@ -124,8 +125,10 @@ def show_missing(name, array, isovalue, in_memory=0):
 
 
 MISSING = (("nan", 0.7, (("missing.h5", "float"), ("missing.h5", "double"), ("missing_float.zarr", "missing_float"))),
-           ("whole nan", 70.5, (("missing.h5", "short"), ("missing.h5", "byte"), ("missing_short.zarr", "missing_short"),
-                                ("missing.h5", "ranged"), ("missing.h5", "two"), ("missing.h5", "ranged", 1), ("missing.h5", "two", 1))))
+           ("whole nan", 70.5, (("missing.h5", "short"), ("missing.h5", "byte"),
+                                ("missing_short.zarr", "missing_short"),
+                                ("missing.h5", "ranged"), ("missing.h5", "two"), ("missing.h5", "ranged", 1),
+                                ("missing.h5", "two", 1))))
 for reference_name, isovalue, arrays in MISSING:
     expected, range_, suggested = show_missing("missing.h5", reference_name, isovalue)
     check(get_covered(expected).mean() > 0.05, f"{reference_name}: something is shown")
@@ -295,7 +298,8 @@ check(offered[-2:] == ["E", "v"] and "E" not in kinds.PointData.keys() and "E/x"
       f"vectors of named components are offered: {offered}")
 kinds.PointArrays = ["E"]
 kinds.UpdatePipeline()
-check(kinds.PointData["E"].GetNumberOfComponents() == 3 and kinds.PointData["E"].GetRange(-1)[0] == 5**0.5, "and read where they are chosen")
+check(kinds.PointData["E"].GetNumberOfComponents() == 3 and kinds.PointData["E"].GetRange(-1)[0] == 5**0.5,
+      "and read where they are chosen")
 simple.Delete(kinds)
 check(list(image.GetProperty("CellArrays").GetAvailable()) == ["c"], "and the cell arrays")
 image.UpdatePipeline()
@@ -351,7 +355,8 @@ scales.UpdatePipeline()
 check(scales.GetDataInformation().GetExtent() == (0, 10, 0, 6, 0, 4), "scripts choose a level by its number")
 check(scales.LevelofDetail == 1 and scales.GetProperty("RawFile").GetElement(0) == 0, "and read it back")
 levels = ["0: 21 x 13 x 10", "1: 11 x 7 x 5"]
-check(scales.GetProperty("LevelNames").GetElement(0).split("\n") == levels, "the panel lists the levels and their sizes")
+check(scales.GetProperty("LevelNames").GetElement(0).split("\n") == levels,
+      "the panel lists the levels and their sizes")
 with Messages() as messages:
     scales.LevelofDetail = 2
     scales.UpdatePipeline()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Save Data writes an image of which each rank has a piece as a brick file: every value comes back, for ParaView's
-own programs and for h5py, and the same picture is drawn from it. Further arguments: a folder to write to, and a Python that has h5py."""
+own programs and for h5py, and the same picture is drawn from it. Further arguments: a folder to write to, and a
+Python that has h5py."""
 
 import subprocess
 

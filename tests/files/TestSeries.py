@@ -56,7 +56,8 @@ for what, files, organization in plays:
 # Before 9.4, VTK adds up steps wrongly, and silently, where arrays are not of its own classes; since then, it rounds
 # such sums in another way.
 statistics = []
-for source in (simple.DSMVolumeReader(FileName=get_series("nhdr")), simple.XMLImageDataReader(FileName=get_series("vti"))):
+for source in (simple.DSMVolumeReader(FileName=get_series("nhdr")),
+               simple.XMLImageDataReader(FileName=get_series("vti"))):
     of_source = simple.TemporalStatistics(Input=simple.Wavelet())
     of_source.Input = source
     of_source.UpdatePipeline()
@@ -123,7 +124,8 @@ view.UseFXAA = other_view.UseFXAA = 0  # a new view has others forget theirs
 
 def play_tinted(source, **properties):
     pictures = []
-    displays = [show(source, each, [value], "tinted", **properties) for each, value in ((view, 0.7), (other_view, 0.65))]
+    displays = [show(source, each, [value], "tinted", **properties)
+                for each, value in ((view, 0.7), (other_view, 0.65))]
     displays[0].ColorArrayName = ["POINTS", "tint"]
     displays[0].LookupTable = colors
     place_camera(view)
@@ -137,7 +139,8 @@ def play_tinted(source, **properties):
 
 
 expected_pair = play_tinted(simple.XMLImageDataReader(FileName=get_series("vti", "tinted")))
-check((expected_pair[0] != expected_pair[2]).any() and (expected_pair[1] != expected_pair[3]).any(), "both views change")
+check((expected_pair[0] != expected_pair[2]).any() and (expected_pair[1] != expected_pair[3]).any(),
+      "both views change")
 for memory in (0, 3):
     with Messages() as messages:
         pictures = play_tinted(simple.DSMVolumeReader(FileName=[tinted]), DSMMemory=memory)

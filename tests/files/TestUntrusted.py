@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers that a brick file or a kept file declares are checked: what cannot be right is found anew, or an error that
-names the file. Save Data leaves the files of others alone. Files that grow are shown as far as they are. Further arguments: a folder to write to, and a Python that has
-h5py."""
+names the file. Save Data leaves the files of others alone. Files that grow are shown as far as they are. Further
+arguments: a folder to write to, and a Python that has h5py."""
 
 import fcntl
 import glob
@@ -26,7 +26,8 @@ def path(name):
 
 
 def run_h5py(name, script):
-    script = f"import h5py, numpy as np, sys\nwith h5py.File(sys.argv[1], 'a') as f:\n    " + script.replace("\n", "\n    ")
+    script = script.replace("\n", "\n    ")
+    script = f"import h5py, numpy as np, sys\nwith h5py.File(sys.argv[1], 'a') as f:\n    {script}"
     subprocess.run([PYTHON, "-c", script, path(name)], check=True, timeout=60)
 
 
@@ -54,12 +55,14 @@ for number, first in enumerate((-(1 << 31), (1 << 31) - 5, -2)):
     name = f"sound{number}.vtkhdf"
     run_h5py(name, EXTENT.format(first))
     said, reader, took = open_file(name)
-    check(said == "" and reader.GetDataInformation().GetExtent()[:2] == (first, first + 3), f"one that begins at {first}: {said}")
+    check(said == "" and reader.GetDataInformation().GetExtent()[:2] == (first, first + 3),
+          f"one that begins at {first}: {said}")
     check(reader.PointData["a"].GetRange() == (0.0, 63.0), "and its range")
     simple.Delete(reader)
 
 # What a brick file says of its values.
-source = image_source("image.SetExtent(piece)\nadd(image, distance(piece).astype('f4'), 'f')", (0, 40, 0, 36, 0, 33), in_parts=True)
+source = image_source("image.SetExtent(piece)\nadd(image, distance(piece).astype('f4'), 'f')", (0, 40, 0, 36, 0, 33),
+                      in_parts=True)
 source.UpdatePipeline()
 simple.SaveData(path("whole.h5"), proxy=source)
 said, reader, _ = open_file("whole.h5")
@@ -79,7 +82,8 @@ DAMAGES = {
     "ranges of another number": "del f['{0}/ValueRanges']; f['{0}/ValueRanges'] = np.zeros((7, 4))".format(GROUP),
     "an index of zeros": "f['%s/BrickIndex'][...] = 0" % GROUP,
     "an index with one other byte": "f['%s/BrickIndex'][50] ^= 1" % GROUP,
-    "half an index": "i = f['{0}/BrickIndex'][...]; del f['{0}/BrickIndex']; f['{0}/BrickIndex'] = i[: i.size // 2]".format(GROUP),
+    "half an index": "i = f['{0}/BrickIndex'][...]; del f['{0}/BrickIndex']; "
+                     "f['{0}/BrickIndex'] = i[: i.size // 2]".format(GROUP),
     "an index of floats": "del f['{0}/BrickIndex']; f['{0}/BrickIndex'] = np.full(4096, 1e300)".format(GROUP),
     "an edge of 0": "f['DSM'].attrs['BrickEdge'] = 0",
     "an edge below 0": "f['DSM'].attrs['BrickEdge'] = -16",
@@ -99,7 +103,8 @@ hash.restype = ctypes.c_uint64
 h = hash(i, ctypes.c_size_t(len(i)), ctypes.c_uint64(0))
 f['%s/BrickIndex'][...] = np.frombuffer(i + h.to_bytes(8, 'little'), 'u1')""" % (GROUP, GROUP)
 SURVEY = 8 * (3 * 512 + 4) + 16
-for what, place, number in (("a count outside of its range", 511, 0x4141414141), ("a first interval", 3 * 512 + 2, 1 << 62),
+for what, place, number in (("a count outside of its range", 511, 0x4141414141),
+                            ("a first interval", 3 * 512 + 2, 1 << 62),
                             ("an exponent", 3 * 512 + 3, -(1 << 63)), ("counts below 0", 0, -1)):
     DAMAGES["a forged survey: " + what] = FORGED.format(SURVEY, place, number)
 DAMAGES["a forged survey that is sound"] = FORGED.format(SURVEY, 511, 0)
@@ -129,7 +134,8 @@ shutil.rmtree(CACHES, ignore_errors=True)
 run_h5py("plain.h5", "f['values'] = np.linspace(2, 9, 4096, dtype='f4').reshape(16, 16, 16)")
 for what, damage in (("nothing is kept yet", None), ("kept, and whole", lambda name: None),
                      ("filled with zeros", lambda name: open(name, "r+b").write(bytes(os.path.getsize(name)))),
-                     ("cut off", lambda name: os.truncate(name, 20)), ("large", lambda name: os.truncate(name, 1 << 36)),
+                     ("cut off", lambda name: os.truncate(name, 20)),
+                     ("large", lambda name: os.truncate(name, 1 << 36)),
                      ("a pipe", lambda name: (os.remove(name), os.mkfifo(name))),
                      ("a folder", lambda name: (os.remove(name), os.mkdir(name)))):
     for kept in glob.glob(os.path.join(CACHES, "dsm-ray-tracer", "*")):
@@ -189,7 +195,8 @@ for name in ("taken.h5.part", "taken.h5.part.json", "taken.h5.part.lock", "taken
     expect_refusal("a folder as " + name, name)
     os.rmdir(path(name))
 # What nobody can resume is replaced.
-for state in (STATE % (b"false", 7, b""), STATE % (b"true", 0, b""), STATE % (b"true", 7, b', "resumable": false'), b"{", b"\0" * 99):
+for state in (STATE % (b"false", 7, b""), STATE % (b"true", 0, b""), STATE % (b"true", 7, b', "resumable": false'),
+              b"{", b"\0" * 99):
     write("taken.h5.part.json", state)
     write("taken.h5.part", b"chunks")
     said, _ = save("taken.h5")

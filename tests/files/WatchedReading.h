@@ -22,8 +22,8 @@ void WriteText(const fs::path& path, const std::string& text);
 /// Writes a file of zeros that takes no space on the disk.
 void WriteSparse(const fs::path& path, std::uintmax_t bytes);
 
-/// Opens a file and reads the first chunk of each of its arrays. Returns what goes wrong; empty where nothing does. Fails
-/// the test where it takes a second of the processor, or 100 MB more memory than before.
+/// Opens a file and reads the first chunk of each of its arrays. Returns what goes wrong; empty where nothing does.
+/// Fails the test where it takes a second of the processor, or 100 MB more memory than before.
 std::string ReadWatched(const fs::path& path, const vol::OpenOptions& options = {});
 
 /// Expects that ReadWatched refuses a file, and that the error has its path and all of these words.

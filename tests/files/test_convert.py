@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Brick files that dsm_convert writes, as h5py reads them. Called as test_convert.py DSM_CONVERT FOLDER MPIRUN...; leaves
-FOLDER/ball.vtkhdf, FOLDER/ball_zstd.vtkhdf and FOLDER/ball_deflate.vtkhdf, of FOLDER/ball.h5, for tests of the
+"""Brick files that dsm_convert writes, as h5py reads them. Called as test_convert.py DSM_CONVERT FOLDER MPIRUN...;
+leaves FOLDER/ball.vtkhdf, FOLDER/ball_zstd.vtkhdf and FOLDER/ball_deflate.vtkhdf, of FOLDER/ball.h5, for tests of the
 reader."""
 
 import glob
@@ -151,7 +151,8 @@ with h5py.File(path("image.vtkhdf"), "r") as one, h5py.File(path("arrays.vtkhdf"
         check(np.array_equal(one["VTKHDF"][name], other["VTKHDF"][name]), f"{name} of several arrays")
     check((one["VTKHDF"].attrs["Direction"] == other["VTKHDF"].attrs["Direction"]).all(), "the direction")
     check(other["DSM/PointData/v/ValueRanges"].shape == (4, 4), "ranges of three components and the magnitude")
-for option, value, words in (("--dataset", "f", "does not support choosing a dataset ('f')"), ("--raw-size", "9,9,9", "--raw-size applies to .raw files only")):
+for option, value, words in (("--dataset", "f", "does not support choosing a dataset ('f')"),
+                             ("--raw-size", "9,9,9", "--raw-size applies to .raw files only")):
     done = convert(option, value, path("image.vtkhdf"), path("none.vtkhdf"))
     check(done.returncode != 0 and words in done.stderr, f"{option} of no use is refused: {done.stderr.strip()}")
 done = convert("--quiet", "--arrays", "nothing", path("image.vtkhdf"), path("none.vtkhdf"))
@@ -160,7 +161,8 @@ done = convert(*BARE[:-1], "1,0,3", path("convert.raw"), path("none.vtkhdf"))
 check(done.returncode != 0 and "--spacing" in done.stderr, f"no spacing: {done.stderr.strip()}")
 
 # What a file says of place and values is kept, unless the user says otherwise.
-done = convert("--quiet", "--spacing", "1,1,2", "--origin", "3,-4,5", "--arrays", "f", path("image.vtkhdf"), path("placed.vtkhdf"))
+done = convert("--quiet", "--spacing", "1,1,2", "--origin", "3,-4,5", "--arrays", "f", path("image.vtkhdf"),
+               path("placed.vtkhdf"))
 check(done.returncode == 0, f"another place {done.stderr}")
 with h5py.File(path("placed.vtkhdf"), "r") as file:
     place = file["VTKHDF"].attrs
@@ -169,14 +171,16 @@ done = convert("--quiet", "--arrays", "t", "--step", "1", path("packed.nc"), pat
 check(done.returncode == 0, f"packed values {done.stderr}")
 with h5py.File(path("unpacked.vtkhdf"), "r") as file, h5py.File(path("packed.nc"), "r") as packed:
     numbers = packed["t"][1]
-    check(np.array_equal(file["VTKHDF/PointData/t"][...], np.where(numbers == 7, np.nan, 0.25 * numbers + 5).astype("f4"), equal_nan=True),
+    check(np.array_equal(file["VTKHDF/PointData/t"][...],
+                         np.where(numbers == 7, np.nan, 0.25 * numbers + 5).astype("f4"), equal_nan=True),
           "they are unpacked")
     check(list(file["VTKHDF"].attrs["Spacing"]) == [1, -0.5, 50], "and where they were")
 done = convert("--quiet", "--levels", "1", "--arrays", "short", path("missing.h5"), path("missing.vtkhdf"))
 check(done.returncode == 0, f"missing values {done.stderr}")
 with h5py.File(path("missing.vtkhdf"), "r") as file:
     coarse = file["DSM/Levels/1/VTKHDF/PointData/short"]
-    check(all(one.attrs["_FillValue"][0] == -9999 for one in (file["VTKHDF/PointData/short"], coarse)), "they are declared")
+    check(all(one.attrs["_FillValue"][0] == -9999 for one in (file["VTKHDF/PointData/short"], coarse)),
+          "they are declared")
     check(set(np.unique(coarse[...][coarse[...] < 0])) == {-9999}, "and no mean of a coarser level has them")
 done = convert("--quiet", "--arrays", "two", path("missing.h5"), path("two_missing.vtkhdf"))
 with h5py.File(path("two_missing.vtkhdf"), "r") as file:
@@ -184,7 +188,8 @@ with h5py.File(path("two_missing.vtkhdf"), "r") as file:
     check([*declared["_FillValue"], *declared["missing_value"]] == [-9999, 8888, -1], "all of several are declared")
 done = convert("--quiet", path("kinds.h5"), path("kinds.vtkhdf"))
 with h5py.File(path("kinds.vtkhdf"), "r") as file:
-    check(len(file["VTKHDF/PointData"]) == 8, f"vectors of arrays that are written are not: {list(file['VTKHDF/PointData'])}")
+    check(len(file["VTKHDF/PointData"]) == 8,
+          f"vectors of arrays that are written are not: {list(file['VTKHDF/PointData'])}")
 done = convert("--quiet", path("uneven.nc"), path("none.vtkhdf"))
 check(done.returncode != 0 and "not evenly spaced" in done.stderr, f"uneven coordinates: {done.stderr.strip()}")
 
@@ -222,7 +227,8 @@ for ranks in (1, 2, 3, 4) if MPIRUN else (1,):
     with h5py.File(path(name), "r") as file:
         levels = file["DSM/Levels"]
         # 101 x 70 x 90, 51 x 35 x 45, 26 x 18 x 23, 13 x 9 x 12
-        check(sorted(levels) == ["1", "2", "3"][: 2 if ranks == 4 else 3], f"{name}: until it is one brick: {sorted(levels)}")
+        check(sorted(levels) == ["1", "2", "3"][: 2 if ranks == 4 else 3],
+              f"{name}: until it is one brick: {sorted(levels)}")
         fine, spacing, origin = values, np.array([1.0, 2.0, 3.0]), np.zeros(3)
         for level in sorted(levels):
             image = levels[level]["VTKHDF"]
@@ -247,7 +253,8 @@ with h5py.File(path("level_2.vtkhdf"), "r") as one, h5py.File(path("levels_1.vtk
     level = all_levels["DSM/Levels/2/VTKHDF/PointData/convert"]
     check(np.array_equal(one["VTKHDF/PointData/convert"], level, equal_nan=True), "a level is read")
 done = convert("--quiet", "--level", 4, path("levels_1.vtkhdf"), path("none.vtkhdf"))
-check(done.returncode != 0 and "has no level 4; valid levels are 0 to 3" in done.stderr, "one that is not there is named")
+check(done.returncode != 0 and "has no level 4; valid levels are 0 to 3" in done.stderr,
+      "one that is not there is named")
 
 # Integers are rounded, vectors go by component, cells have that at their center; the direction counts.
 done = convert("--quiet", "--levels", 1, "--brick", 4, path("image.vtkhdf"), path("arrays_levels.vtkhdf"))
@@ -340,16 +347,19 @@ os.remove(path("big.vtkhdf"))
 # Arrays whose names look alike when they are written are told apart.
 with h5py.File(path("alike.h5"), "w") as file:
     file["p/a"], file["p_a"] = big, big + 1
-check(kill_after(100, ["--quiet", "--dataset", "p/a", path("alike.h5"), path("big.vtkhdf")]), "it is killed with one of two arrays")
+check(kill_after(100, ["--quiet", "--dataset", "p/a", path("alike.h5"), path("big.vtkhdf")]),
+      "it is killed with one of two arrays")
 done = convert("--quiet", "--dataset", "p_a", path("alike.h5"), path("big.vtkhdf"))
 with h5py.File(path("big.vtkhdf"), "r") as file:
     check(np.array_equal(file["VTKHDF/PointData/p_a"][...], big + 1), f"the other one is begun anew {done.stderr}")
 os.remove(path("big.vtkhdf"))
 done = convert("--quiet", path("alike.h5"), path("big.vtkhdf"))
-check(done.returncode == 1 and "'p/a' and 'p_a' would both be named 'p_a'" in done.stderr, f"both: {done.stderr.strip()}")
+check(done.returncode == 1 and "'p/a' and 'p_a' would both be named 'p_a'" in done.stderr,
+      f"both: {done.stderr.strip()}")
 
 # What is read is not written over, whatever is named.
-for name, origin in (("detached.nhdr", "detached.raw"), ("detached.mhd", "detached.bin"), ("raw_float32.zarr", "raw_float32.zarr/0.0.0"),
+for name, origin in (("detached.nhdr", "detached.raw"), ("detached.mhd", "detached.bin"),
+                     ("raw_float32.zarr", "raw_float32.zarr/0.0.0"),
                      ("origins/virtual.h5", "origins/a.bin"), ("origins/link.h5", "origins/d.bin")):
     before = open(path(origin), "rb").read()
     done = convert("--quiet", path(name), path(origin))
@@ -383,12 +393,14 @@ while first.poll() is None and not os.path.exists(path("big.vtkhdf.part.json")):
 first.send_signal(signal.SIGSTOP)
 second = convert(*BIG)
 first.send_signal(signal.SIGCONT)
-check(second.returncode == 1 and "is being written by another process" in second.stderr, f"two at a time: {second.stderr.strip()}")
+check(second.returncode == 1 and "is being written by another process" in second.stderr,
+      f"two at a time: {second.stderr.strip()}")
 check(first.wait(100) == 0, f"the first goes on: {first.stderr.read().strip()}")
 compare_big("of the first of two")
 os.remove(path("big.vtkhdf"))
 os.mkfifo(path("pipe"))
-for place, words in ((FOLDER, "a folder or a device"), (path("pipe"), "a folder or a device"), ("", "name of the file to write is empty")):
+for place, words in ((FOLDER, "a folder or a device"), (path("pipe"), "a folder or a device"),
+                     ("", "name of the file to write is empty")):
     done = convert(*BIG[:-1], place)
     check(done.returncode == 1 and words in done.stderr, f"to '{place}': {done.stderr.strip()}")
 os.remove(path("pipe"))
@@ -419,9 +431,10 @@ if subprocess.run([*IN_SMALL, "true"], capture_output=True).returncode == 0:
     check(held["whole"] and held["chunks"][0] > 0, f"and it goes on with what it had: {held['chunks']} chunks")
     # However little is left: in the middle of the chunks, of what the library holds, of a level, or at the end.
     np.zeros((32, 32, 32), "<f4").tofile(path("little.raw"))
-    LITTLE = command(1, "--quiet", "--memory", "1", "--brick", "8", "--levels", "1", "--raw-size", "32,32,32", "--raw-type",
-                     "float32", path("little.raw"), os.path.join(small, "little.vtkhdf"))
-    sizes = f'for k in $(seq 8 28 1024); do mount -t tmpfs -o size="$k"k none "{small}"; "$@"; echo $?; umount "{small}"; done'
+    LITTLE = command(1, "--quiet", "--memory", "1", "--brick", "8", "--levels", "1", "--raw-size", "32,32,32",
+                     "--raw-type", "float32", path("little.raw"), os.path.join(small, "little.vtkhdf"))
+    sizes = (f'for k in $(seq 8 28 1024); do mount -t tmpfs -o size="$k"k none "{small}"; '
+             f'"$@"; echo $?; umount "{small}"; done')
     done = subprocess.run([*IN_SMALL[:6], sizes, "sh", *LITTLE], capture_output=True, text=True, timeout=100)
     codes, said = done.stdout.split(), done.stderr.splitlines()
     check(set(codes) == {"0", "1"} and codes.count("1") > 10, f"on disks of each size: {codes}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""dsm_convert with names of any bytes, and with other programs' files, pipes and damaged files in its way. Each case gives
-the right file, or an error that names file and cause, soon. Called as test_writing.py DSM_CONVERT FOLDER."""
+"""dsm_convert with names of any bytes, and with other programs' files, pipes and damaged files in its way. Each case
+gives the right file, or an error that names file and cause, soon. Called as test_writing.py DSM_CONVERT FOLDER."""
 
 import glob
 import json
@@ -56,7 +56,8 @@ def get_values(name, array="PointData/values"):
 
 
 def list_beside(name):
-    return sorted(other for other in os.listdir(b".") if other.startswith(os.fsencode(name)) and other != os.fsencode(name))
+    return sorted(other for other in os.listdir(b".") if other.startswith(os.fsencode(name))
+                  and other != os.fsencode(name))
 
 
 # Names of files that are not UTF-8, have a % or are long.
@@ -72,7 +73,8 @@ for name in (b"b\xe9ta", b"%s%n%b", b"caf\xc3\xa9", b"a" * 240, b"\xff" * 230, b
     os.remove(name + b".raw")
 refuses("a name that is too long", ["File name too long"], *BARE, "values.raw", "x" * 300 + ".h5")
 refuses("an input whose name is too long", ["xxx", "File name too long"], *BARE, "x" * 300 + ".raw", "x.h5")
-refuses("a folder that is not there", ["nowhere/%s.h5", "No such file or directory"], *BARE, "values.raw", "nowhere/%s.h5")
+refuses("a folder that is not there", ["nowhere/%s.h5", "No such file or directory"], *BARE, "values.raw",
+        "nowhere/%s.h5")
 
 # Names of arrays.
 NAMES = (b"\xe9t\xe9", b"%s%n%d", b"caf\xc3\xa9", b"..", b"a" * 255, b"two\nlines", b"Cr\xc3\xb6\xff")
@@ -102,11 +104,14 @@ check(done.returncode == 0, f"VTK's image with such names: {ascii(done.stderr)}"
 
 # Options.
 for option, number in (("--threads", "1000000000"), ("--memory", "99999999999999999999"), ("--memory", str(1 << 60)),
-                       ("--brick", "1e9"), ("--brick", "1000000"), ("--step", "-1"), ("--step", "7"), ("--level", "99999999999"),
-                       ("--raw-header", "-5"), ("--spacing", "0,5;1;1"), ("--spacing", "nan,1,1"), ("--spacing", "1e999,1,1")):
+                       ("--brick", "1e9"), ("--brick", "1000000"), ("--step", "-1"), ("--step", "7"),
+                       ("--level", "99999999999"),
+                       ("--raw-header", "-5"), ("--spacing", "0,5;1;1"), ("--spacing", "nan,1,1"),
+                       ("--spacing", "1e999,1,1")):
     refuses(f"{option} {number}", ["dsm_convert: "], option, number, *BARE, "values.raw", "options.h5")
 check(list_beside("options.h5") == [] and not os.path.exists("options.h5"), "nothing is left of refused options")
-done = convert("--spacing", "0.5,1.25,1e-3", *BARE, "values.raw", "spacing.h5", env={**os.environ, "LC_ALL": "de_DE.UTF-8"})
+done = convert("--spacing", "0.5,1.25,1e-3", *BARE, "values.raw", "spacing.h5",
+               env={**os.environ, "LC_ALL": "de_DE.UTF-8"})
 with h5py.File("spacing.h5", "r") as file:
     check(list(file["VTKHDF"].attrs["Spacing"]) == [0.5, 1.25, 1e-3], "numbers have a point in every locale")
 
@@ -117,7 +122,8 @@ done = convert("steps.h5", "step.h5")
 check(done.returncode == 0 and "'steps.h5' has 5 time steps (0 to 4); only step 0 is written" in done.stderr,
       f"a note of the other steps: {done.stderr.strip()}")
 done = convert("--step", "3", "steps.h5", "step.h5")
-check(done.returncode == 0 and done.stderr == "" and np.array_equal(get_values("step.h5"), values + 3), "none with --step")
+check(done.returncode == 0 and done.stderr == "" and np.array_equal(get_values("step.h5"), values + 3),
+      "none with --step")
 
 # A chunk that does not fit the memory.
 with h5py.File("large.h5", "w") as file:
@@ -153,7 +159,8 @@ for suffix in ("part", "part.json", "part.lock", "part.level1", "part.level1.par
         if make is make_file and suffix in ("part.json", "part.level1.part", "part.json.new"):
             os.remove(name)
             continue
-        refuses(f"{make.__name__} as {suffix}", ["way.h5.part"], "--levels", "1", "--brick", "4", *BARE, "values.raw", "way.h5")
+        refuses(f"{make.__name__} as {suffix}", ["way.h5.part"], "--levels", "1", "--brick", "4", *BARE, "values.raw",
+                "way.h5")
         check(get_kind(name) == kind and (make is not make_file or open(name, "rb").read() == b"mine"), "and it stays")
         remove(name)
         if suffix == "part.level1.part":  # the finest level is whole then, and waits for a later call
@@ -243,9 +250,11 @@ DAMAGES = {
     "ranges that are words": replace(INDEX + "ValueRanges", data=np.array([[b"a", b"b", b"c", b"d"]])),
     "no ranges": lambda: change_part(lambda file: file.__delitem__(INDEX + "ValueRanges")),
     "ranges of NaN": lambda: change_part(lambda file: file[INDEX + "ValueRanges"].__setitem__(..., np.nan)),
-    "a range the wrong way round": lambda: change_part(lambda file: file[INDEX + "ValueRanges"].__setitem__(..., [[2, 1, 2, 1]])),
+    "a range the wrong way round": lambda: change_part(
+        lambda file: file[INDEX + "ValueRanges"].__setitem__(..., [[2, 1, 2, 1]])),
     "halos of another size": replace(INDEX + "Halos", shape=(1000, 3), chunks=(1, 3), dtype="u1"),
-    "values of another shape": replace("VTKHDF/PointData/" + ARRAY, shape=(16, 16, 16), chunks=(16, 16, 16), dtype="f4"),
+    "values of another shape": replace("VTKHDF/PointData/" + ARRAY, shape=(16, 16, 16), chunks=(16, 16, 16),
+                                       dtype="f4"),
 }
 for what, damage in DAMAGES.items():
     for name, content in kept.items():
@@ -265,6 +274,7 @@ done = convert(*BARE, "values.raw", "many.h5.part.h5")
 check(done.returncode == 0 and all(open(name, "rb").read() == content for name, content in kept.items()),
       "a file beside it leaves a conversion as it is")
 done = convert("--memory", "64", *MANY)
-check(done.returncode == 0 and np.array_equal(get_values("many.h5", "PointData/" + ARRAY), many), "which is finished then")
+check(done.returncode == 0 and np.array_equal(get_values("many.h5", "PointData/" + ARRAY), many),
+      "which is finished then")
 shutil.rmtree(FOLDER)
 sys.exit(failed)

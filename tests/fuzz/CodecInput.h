@@ -12,8 +12,9 @@
 namespace fuzz
 {
 
-/// An input of the target for codecs: number of steps (1 byte), for each its kind and width (2 bytes), which are skipped
-/// (1), how many bytes the samples have (2, low byte first) and how many the halo (1), and the stored bytes.
+/// An input of the target for codecs: number of steps (1 byte), for each its kind and width (2 bytes), which are
+/// skipped (1), how many bytes the samples have (2, low byte first) and how many the halo (1), and the stored
+/// bytes.
 struct CodecInput
 {
   static constexpr std::size_t MostSteps = 4;

@@ -38,8 +38,8 @@ namespace
 {
 
 constexpr int CrashSignals[] = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT };
-/// Functions of HDF5 1.10 that do not end in damaged files: global heaps with an object of no size, local heaps with a free
-/// block that follows itself, and selections of virtual datasets with far too many blocks.
+/// Functions of HDF5 1.10 that do not end in damaged files: global heaps with an object of no size, local heaps
+/// with a free block that follows itself, and selections of virtual datasets with far too many blocks.
 constexpr const char* EndlessFunctions[] = { "H5HG__protect", "H5HL_protect",
   "H5S_select_deserialize" };
 
@@ -69,8 +69,8 @@ public:
 
   void PrintAll() const { backtrace_symbols_fd(this->Frames, this->Count, STDERR_FILENO); }
 
-  /// Whether libhdf5 called the handler that asks: the innermost function is libhdf5's, without the program's own, which
-  /// are the handler, and those of the C and C++ libraries and of the sanitizers behind it.
+  /// Whether libhdf5 called the handler that asks: the innermost function is libhdf5's, without the program's own,
+  /// which are the handler, and those of the C and C++ libraries and of the sanitizers behind it.
   bool IsInLibrary() const
   {
     const char* const program = FindModule(reinterpret_cast<void*>(&InstallCrashNotes));

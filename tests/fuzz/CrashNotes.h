@@ -7,24 +7,24 @@
 namespace fuzz
 {
 
-/// How a process ends whose input makes the HDF5 library crash, not the project. The targets go on after such inputs, and
-/// count them.
+/// How a process ends whose input makes the HDF5 library crash, not the project. The targets go on after such
+/// inputs, and count them.
 constexpr int EndedInLibrary = 76;
 
-/// From now on, a signal such as SIGSEGV or SIGABRT prints the stack. Where the innermost function that is not one of the
-/// C or C++ library is libhdf5's, the process ends with `codeForLibrary`; else as it would have without.
+/// From now on, a signal such as SIGSEGV or SIGABRT prints the stack. Where the innermost function that is not one
+/// of the C or C++ library is libhdf5's, the process ends with `codeForLibrary`; else as it would have without.
 void InstallCrashNotes(int codeForLibrary);
 
 /// Ends the process with `codeForLibrary` after printing what the HDF5 library did wrong.
 [[noreturn]] void BlameLibrary(const char* what);
 
-/// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it. libhdf5 gets nothing
-/// then, and goes on; with a sanitizer, the process ends with `codeForLibrary`.
+/// From now on, an allocation of more bytes ends the process by SIGABRT, whatever library asks for it. libhdf5 gets
+/// nothing then, and goes on; with a sanitizer, the process ends with `codeForLibrary`.
 void LimitAllocations(std::size_t bytes);
 
-/// The process ends by SIGABRT when it has used the processor for so many seconds from now, so that a busy machine makes
-/// no difference, or when ten times as many have passed; 0: there is no limit. It ends with `codeForLibrary` where it is
-/// in a function of libhdf5 that is known not to end for some files.
+/// The process ends by SIGABRT when it has used the processor for so many seconds from now, so that a busy machine
+/// makes no difference, or when ten times as many have passed; 0: there is no limit. It ends with `codeForLibrary`
+/// where it is in a function of libhdf5 that is known not to end for some files.
 void LimitTime(unsigned seconds);
 
 } // namespace fuzz

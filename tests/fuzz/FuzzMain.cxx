@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs a fuzz target where libFuzzer is not there: changes seeds at random and hands them to the target. The options are
-// libFuzzer's (https://llvm.org/docs/LibFuzzer.html), so that one command line serves both:
+// Runs a fuzz target where libFuzzer is not there: changes seeds at random and hands them to the target. The
+// options are libFuzzer's (https://llvm.org/docs/LibFuzzer.html), so that one command line serves both:
 //   -max_total_time=SECONDS  (default: without an end)     -runs=INPUTS     (default: without an end)
 //   -dict=FILE                                             -seed=NUMBER     (default 1)
 //   -timeout=SECONDS         of one input (default 5)      -max_len=BYTES   (default 64 KiB)
 //   -malloc_limit_mb=MIB     of one allocation (default 256)
 //   -artifact_prefix=PATH    what findings are named with  -ignore_crashes=1: go on after a finding
-// Folders have seeds. Files instead are inputs: each is run once.
-// A process of its own runs the inputs. When it ends in a crash, the input is kept, as PATHcrash-NUMBER; where the crash
-// was in the HDF5 library (CrashNotes.h), as PATHlibrary-NUMBER, and that is no finding.
+// Folders have seeds. Files instead are inputs: each is run once. A process of its own runs the inputs. When it
+// ends in a crash, the input is kept, as PATHcrash-NUMBER; where the crash was in the HDF5 library (CrashNotes.h),
+// as PATHlibrary-NUMBER, and that is no finding.
 #include "CrashNotes.h"
 #include "InputFolder.h"
 #include "Mutator.h"

@@ -28,8 +28,8 @@ inline void CheckHdf(const char* name, const std::uint8_t* bytes, std::size_t co
   CheckLevels(path);
   LimitTime(0);
   static_cast<void>(isThere);
-  // The readers close what they open; functions of the library that fail do not always, such as H5Ovisit. The next input
-  // must not find this one's file.
+  // The readers close what they open; functions of the library that fail do not always, such as H5Ovisit. The next
+  // input must not find this one's file.
   if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_ALL) > 0)
   {
     BlameLibrary("objects of the file are still open\n");

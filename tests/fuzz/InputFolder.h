@@ -9,9 +9,9 @@
 namespace fuzz
 {
 
-/// The folder of a fuzz target's input files: in memory where the system has /dev/shm, one for each process, removed when
-/// the process ends normally. The first call also removes folders of processes that crashed. Forked processes share the
-/// folder of their parent.
+/// The folder of a fuzz target's input files: in memory where the system has /dev/shm, one for each process,
+/// removed when the process ends normally. The first call also removes folders of processes that crashed. Forked
+/// processes share the folder of their parent.
 const std::filesystem::path& GetInputFolder();
 
 /// Writes a file of the folder, or of a folder in it that exists; ends the process when that fails.

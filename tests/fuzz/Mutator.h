@@ -13,8 +13,8 @@ namespace fuzz
 
 using Input = std::vector<std::uint8_t>;
 
-/// Makes inputs out of seeds by random changes, without looking at what the target does with them. The same seeds, words
-/// and number give the same inputs.
+/// Makes inputs out of seeds by random changes, without looking at what the target does with them. The same seeds,
+/// words and number give the same inputs.
 class Mutator
 {
 public:

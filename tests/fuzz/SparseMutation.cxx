@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Changes of HDF5 files for libFuzzer: most of their bytes are 0 and have no meaning, so that half of the changes are made
-// around one that is not.
+// Changes of HDF5 files for libFuzzer: most of their bytes are 0 and have no meaning, so that half of the changes
+// are made around one that is not.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

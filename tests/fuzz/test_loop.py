@@ -30,7 +30,8 @@ with tempfile.TemporaryDirectory() as work:
         file.write("some text of a seed")
     code, inputs, _ = run("-runs=1000", seeds)
     check((code, inputs) == (0, 1000), f"without defects, the loop ends with {code} after {inputs} inputs")
-    for word, said in (("throw", "not caught"), ("large", "an allocation of 314572800 bytes"), ("loop", "takes too long")):
+    for word, said in (("throw", "not caught"), ("large", "an allocation of 314572800 bytes"),
+                       ("loop", "takes too long")):
         words = os.path.join(work, word + ".dict")
         with open(words, "w", encoding="utf-8") as file:
             file.write(f'# a comment\nname="{word[:-1]}\\x{ord(word[-1]):02x}"\n')

@@ -62,7 +62,8 @@ def look_at_all():
     plain = render(view)
     darker = deep.sum(axis=1) < plain.sum(axis=1) - 60
     check(0.02 < darker.mean() < 0.3, f"faint shadows are on {100 * darker.mean():.1f} % of the view")
-    check((deep <= plain + 1).all() and deep[darker].min() > 40, f"nothing is brighter, and nothing black: {deep[darker].min()}")
+    check((deep <= plain + 1).all() and deep[darker].min() > 40,
+          f"nothing is brighter, and nothing black: {deep[darker].min()}")
     save(".plain")
     moving = render_in_passing(view)
     display.DSMLook = "With depth"

@@ -192,7 +192,8 @@ class Watch:
         limit = max(0.3, 0.1 + 3.0 * self.redraw)
         for _ in range(2):  # another program may have taken the processor once
             heard.clear()
-            clicks = subprocess.Popen(["python3", "-c", CLICK, *map(str, place), *holds], stdout=subprocess.PIPE, text=True)
+            clicks = subprocess.Popen(["python3", "-c", CLICK, *map(str, place), *holds], stdout=subprocess.PIPE,
+                                      text=True)
             while clicks.poll() is None:
                 yield
             pressed = [float(line) for line in clicks.stdout]
@@ -231,7 +232,8 @@ class Watch:
         check((grab(self.view) != shown).any(), "the next pictures are drawn and refined")
 
     def click_after_tracing(self):
-        """What is drawn after the traced picture, such as the orientation axes, is there soon whatever the user presses."""
+        """What is drawn after the traced picture, such as the orientation axes, is there soon whatever the user
+        presses."""
         self.display.DSMAmbientOcclusionSamples = 0
         self.display.DSMSamplesPerPixel = self.wanted = 1
         self.view.OrientationAxesVisibility = 1

@@ -87,7 +87,8 @@ def python():
     build()
     script = os.path.join(PROJECT, "examples", "python", "isosurface.py")
     folder = subprocess.run(
-        ["find", PREFIX, "-name", "dsmraytracer", "-path", "*-packages/*"], stdout=subprocess.PIPE, text=True, check=True)
+        ["find", PREFIX, "-name", "dsmraytracer", "-path", "*-packages/*"], stdout=subprocess.PIPE, text=True,
+        check=True)
     os.environ["PYTHONPATH"] = os.path.dirname(folder.stdout.split()[0])
     alone = draw_with_floor([sys.executable, script])
     check((read("isosurface.png") == alone).all(), "the target of CMake draws something else")

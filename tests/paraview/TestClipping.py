@@ -96,8 +96,8 @@ source, traced, surface = ball, mesh, ball
 compare("clipped mesh", [([12.0, 12.0, 15.0], normal), ([0, 5, 0], [0, 1, 0])])
 simple.Hide(ball, view)
 
-# A domain that moves: a box, a plane and slices that the user has not placed are in each step what they are in the first
-# one; what the user has placed stays, and says so when nothing is left.
+# A domain that moves: a box, a plane and slices that the user has not placed are in each step what they are in the
+# first one; what the user has placed stays, and says so when nothing is left.
 moving = image_source("""
 time = request.Get(vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()) or 0.0
 image.SetExtent(piece)

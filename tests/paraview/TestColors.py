@@ -248,8 +248,10 @@ check(edges[1] > 1.5 * edges[0], f"edges between cells: {edges[0]:.2f} Gouraud, 
 # The same controls of meshes do what they do on a Surface.
 mesh = simple.Contour(Input=holes, ContourBy=["POINTS", "f"], Isosurfaces=[0.7])
 for name, array, place, mapped, opacity, interpolation in (
-        ("MeshOfNumbers", "holes", "CELLS", True, 1.0, "Gouraud"), ("MeshWithHoles", "holes", "CELLS", True, 0.0, "Gouraud"),
-        ("MeshOfColours", "colours", "CELLS", False, 0.0, "Gouraud"), ("FlatMesh", "smooth", "POINTS", False, 0.0, "Flat")):
+        ("MeshOfNumbers", "holes", "CELLS", True, 1.0, "Gouraud"),
+        ("MeshWithHoles", "holes", "CELLS", True, 0.0, "Gouraud"),
+        ("MeshOfColours", "colours", "CELLS", False, 0.0, "Gouraud"),
+        ("FlatMesh", "smooth", "POINTS", False, 0.0, "Flat")):
     pictures = []
     for representation in (REPRESENTATION, "Surface") if get_ranks() == 1 else (REPRESENTATION,):
         shown = simple.Show(mesh, view)
@@ -267,7 +269,8 @@ for name, array, place, mapped, opacity, interpolation in (
 
 # Categories: each value has a color of its own. Between two samples it is that of the nearer one, where Contour makes
 # values that are of no category.
-PALETTE = numpy.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255], [255, 128, 0], [0, 128, 255]])
+PALETTE = numpy.array([[255, 0, 0], [0, 255, 0], [0, 0, 255], [0, 255, 255], [255, 0, 255], [255, 128, 0],
+                       [0, 128, 255]])
 NO_CATEGORY = [255, 255, 255]
 
 

@@ -115,7 +115,8 @@ def save(name):
     display.DSMShowStatistics = display.DSMShowLegend = 0
     simple.SaveScreenshot(path, view, ImageResolution=[840, 480])
     without = read(path)
-    display.DSMShowStatistics, display.DSMShowLegend = int(name == "statistics_in_tiles"), int(name == "legend_in_tiles")
+    display.DSMShowStatistics = int(name == "statistics_in_tiles")
+    display.DSMShowLegend = int(name == "legend_in_tiles")
     simple.SaveScreenshot(path, view, ImageResolution=[840, 480])
     return numpy.nonzero(abs(read(path) - without).max(axis=2) > 60)
 

@@ -96,7 +96,8 @@ for method, value, words in (
     expect_then_delete(image_source(PLACED % (method, value)), [words])
 
 VECTOR = "image.SetExtent(piece)\nadd(image, np.stack(points(piece), axis=1), 'v')\n"
-expect_then_delete(image_source(VECTOR), ["'v' has the components 0 to 2, and 3 for the magnitude"], array="v", DSMIsoComponent=7)
+expect_then_delete(image_source(VECTOR),
+                   ["'v' has the components 0 to 2, and 3 for the magnitude"], array="v", DSMIsoComponent=7)
 
 grid = simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid")
 grid.ScriptRequestInformation = IMAGE_SOURCE_INFORMATION % "0, 4, 0, 4, 0, 4"
@@ -169,7 +170,8 @@ for name, bad, kept, good in (
             setattr(display, name, bad)
             display.UpdateVTKObjects()
             said = [line for line in messages.text.splitlines() if "out of range" in line]
-            check(len(said) == 1 and name in said[0] and f"{bad} is out of range; {kept}" in said[0], f"{name} is {bad}: {said}")
+            check(len(said) == 1 and name in said[0] and f"{bad} is out of range; {kept}" in said[0],
+                  f"{name} is {bad}: {said}")
             setattr(display, name, good)
             display.UpdateVTKObjects()
 

@@ -77,7 +77,8 @@ sample.Kind = "Mixing Layer"
 display.Representation = "Outline"
 render(view)
 told = display.DSMIsoArray, display.DSMIsoValue
-check(told[0][1] == "entropy" and 100.0 < told[1] < 150.0, f"before it is traced, it has the array and a value of its data: {told}")
+check(told[0][1] == "entropy" and 100.0 < told[1] < 150.0,
+      f"before it is traced, it has the array and a value of its data: {told}")
 sample.Kind = "Noisy Sphere"
 render(view)
 display.Representation = REPRESENTATION
@@ -99,7 +100,8 @@ check(display.DSMIsoArrayAutomatic == 0, "an array that a script sets is not aut
 sample.Kind = "Mixing Layer"
 with Messages() as messages:
     render(view)
-check("'f' does not exist" in messages.text and display.DSMIsoArray[1] == "f", "and stays, with an error: " + messages.text)
+check("'f' does not exist" in messages.text and display.DSMIsoArray[1] == "f",
+      "and stays, with an error: " + messages.text)
 simple.Delete(sample)
 
 # An automatic isovalue follows the data.
@@ -159,7 +161,8 @@ mesh.Function, mesh.AttributeType = "5", "Cell Data"
 mesh.ResultArrayName = "t"
 with Messages() as messages:
     render(view)
-check(display.ColorArrayName[1] in (None, "") and messages.text == "", f"and by none: {display.ColorArrayName}{messages.text}")
+check(display.ColorArrayName[1] in (None, "") and messages.text == "",
+      f"and by none: {display.ColorArrayName}{messages.text}")
 simple.ColorBy(display, ("POINTS", "Normals"))
 render(view)
 mesh.Input = simple.Cone()
@@ -175,7 +178,8 @@ x = points(piece)[0]
 add(image, np.where(x > 30, TYPE(FILL), values))
 """
 simple.Hide(mesh, view)
-for kind, fill, scale in (("np.float32", 1e20, 1), ("np.float32", -3.4028235e38, 1), ("np.float64", -1.7976931348623157e308, 1),
+for kind, fill, scale in (("np.float32", 1e20, 1), ("np.float32", -3.4028235e38, 1),
+                          ("np.float64", -1.7976931348623157e308, 1),
                           ("np.int16", -32768, 1000), ("np.int16", -3024, 1000)):
     script = FILLED.replace("TYPE", kind).replace("FILL", repr(fill)).replace("SCALE", str(scale))
     filled = image_source(script, in_parts=True, extent=(0, 48, 0, 48, 0, 48))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A server of several clients, at the port that is given: the one that leads takes the isovalue that the data suggest."""
+"""A server of several clients, at the port that is given: the one that leads takes the isovalue that the data
+suggest."""
 
 from dsm_testing import *
 
@@ -12,7 +13,8 @@ place_camera(view)
 picture = render(view)
 check(get_covered(picture).any(), "the surface is shown at what the data suggest")
 check(display.DSMIsoValueAutomatic == 1, "at an automatic isovalue")
-check(display.DSMIsoValue != display.GetPropertyValue("DSMSuggestedIsoValue"), "a client that only looks on sets nothing")
+check(display.DSMIsoValue != display.GetPropertyValue("DSMSuggestedIsoValue"),
+      "a client that only looks on sets nothing")
 
 clients = servermanager.ActiveConnection.Session.GetCollaborationManager()
 clients.UpdateUserInformations()

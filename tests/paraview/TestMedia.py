@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DSM Volume: what ParaView's Volume shows, the same picture on any number of ranks, and what else the view shows in it."""
+"""DSM Volume: what ParaView's Volume shows, the same picture on any number of ranks, and what else the view shows in
+it."""
 
 import numpy as np
 from dsm_testing import *
@@ -16,7 +17,8 @@ near = 1.0 / (1.0 + distance(piece))
 for name, parts in {
     'x2': [np.sin(i / 4.0) * np.sin(j / 5.0), near],
     'x3': [i, j, k],
-    'x4bytes': [(10.0 * i).astype(np.uint8), (10.0 * j).astype(np.uint8), (10.0 * k).astype(np.uint8), (255.0 - 12.0 * distance(piece)).clip(0.0, 255.0).astype(np.uint8)],
+    'x4bytes': [(10.0 * i).astype(np.uint8), (10.0 * j).astype(np.uint8), (10.0 * k).astype(np.uint8),
+                (255.0 - 12.0 * distance(piece)).clip(0.0, 255.0).astype(np.uint8)],
     'x4': [i / 24.0, j / 24.0, k / 24.0, near],
 }.items():
     several = numpy_to_vtk(np.stack(parts, axis=1), deep=True)

@@ -20,8 +20,8 @@ def color_by(display, association, array, *component):
 
 def compare(name, source, prepare=None, share=0.005, shading=3.0, position=(0.6, 0.5, 1.0),
             reference="Surface"):
-    """Draws a source; `prepare(display)` sets it up. Deletes it. One rank is compared with its Surface, and several with
-    one, or, where they have other data than one (no name), with their own Surface."""
+    """Draws a source; `prepare(display)` sets it up. Deletes it. One rank is compared with its Surface, and several
+    with one, or, where they have other data than one (no name), with their own Surface."""
     display = show_traced(source, view)
     if prepare:
         prepare(display)

@@ -41,7 +41,8 @@ check_equal(render(view), plain, "and the shadows are gone", 0)
 first.DSMLook = "With depth"
 check(second.DSMLook == "With depth", "a view has one look")
 deep = render(view, "depth")
-check((deep.sum(axis=2) < plain.sum(axis=2) - 20).any() and (deep <= plain + 1).all(), "some of it is in a faint shadow")
+check((deep.sum(axis=2) < plain.sum(axis=2) - 20).any() and (deep <= plain + 1).all(),
+      "some of it is in a faint shadow")
 first.DSMShadows = 1
 check_equal(render(view), shaded, "shadows take the place of the first look", 0)
 check((shaded.sum(axis=2) < deep.sum(axis=2) - 20).any(), "and are darker")

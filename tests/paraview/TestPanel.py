@@ -55,7 +55,8 @@ for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True),
         else:
             with open(PICTURED, encoding="utf-8") as text:
                 pictured = text.read().splitlines()
-            check(labels == pictured, f"the documents' picture shows these properties, {labels}; if not, run docs/images/gui.py")
+            check(labels == pictured, f"the documents' picture shows these properties, {labels}; if not, run "
+                                      f"docs/images/gui.py")
     widgets = {}
     for number in range(proxy.GetNumberOfPropertyGroups()):
         group = proxy.GetPropertyGroup(number)
@@ -98,7 +99,8 @@ def is_active(display, name):
     return not hints or (ask(hints, display.SMProxy, "visibility") and ask(hints, display.SMProxy, "enabled_state"))
 
 
-SURFACES = ["Opacity", "PointSize", "LineWidth", "EdgeColor", "BackfaceRepresentation", "DSMReflectivity", "DSMMaxBounces"]
+SURFACES = ["Opacity", "PointSize", "LineWidth", "EdgeColor", "BackfaceRepresentation", "DSMReflectivity",
+            "DSMMaxBounces"]
 LIT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMEnvironmentLight"]
 for source in (simple.Wavelet(), simple.AMRGaussianPulseSource(), simple.HyperTreeGridRandom()):
     display = simple.Show(source, view)

@@ -12,7 +12,8 @@ def places(extent):
     i, j, k = [np.arange(extent[2 * axis], extent[2 * axis + 1] + 1.0) for axis in range(3)]
     return {steps}
 """
-STRETCHED = "2.0 * (1.2**i - 1.0) / (1.2**30 - 1.0) - 1.0, (j - 9.0 + 0.3 * (-1.0) ** j) / 13.3, (k - 5.0) ** 1.5 / 58.8 - 1.0"
+STRETCHED = ("2.0 * (1.2**i - 1.0) / (1.2**30 - 1.0) - 1.0, (j - 9.0 + 0.3 * (-1.0) ** j) / 13.3, "
+             "(k - 5.0) ** 1.5 / 58.8 - 1.0")
 FALLING = STRETCHED.replace("(k - 5.0)", "(29.0 - k)")
 EQUAL = "i / 15.0 - 1.0, (j - 9.0) / 13.0, (k - 17.0) / 12.0"
 GRID = """

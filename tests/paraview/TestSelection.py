@@ -160,7 +160,8 @@ while not leaf.IsDoneWithTraversal():
         distances.append(abs(numpy.linalg.norm(middle) - radius) / block.GetSpacing()[0])
     leaf.GoToNextItem()
 check(len(distances) == len(selected) > 30, f"{len(distances)} cells are selected, of {len(selected)}")
-check(len(set(selected[:, 0])) > 1 and max(distances) < 1.0, f"in several blocks, up to {max(distances)} of a cell away")
+check(len(set(selected[:, 0])) > 1 and max(distances) < 1.0,
+      f"in several blocks, up to {max(distances)} of a cell away")
 simple.Delete(pulse)
 
 # All ranks select what one does.

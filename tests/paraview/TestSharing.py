@@ -105,7 +105,8 @@ for source, name in ((volume, "volume"), (mesh, "mesh")):
     if is_volume:
         # Another dataset, of the same size and for all ranks but one the same.
         like = image_source("", EXTENT, in_parts=True)
-        like.Script = source.Script.replace("0.9 * distance(piece)", "(0.9 if rank + 1 < ranks else 0.6) * distance(piece)")
+        like.Script = source.Script.replace("0.9 * distance(piece)",
+                                            "(0.9 if rank + 1 < ranks else 0.6) * distance(piece)")
         simple.Hide(source, views[1])
         unlike = Picture(views[1], show_traced(like, views[1], **own), 0.3)
         check(unlike.publications == changed.publications + 1, "what differs on one rank is built")

@@ -42,7 +42,8 @@ def compare(ours, theirs, what, mean=0.2, share=0.01, step=2):
     check(get_covered(theirs).mean() > 0.05, f"{what}: the reference shows something")
     check(
         difference.mean() < mean and (difference > step).mean() < share,
-        f"{what}: mean difference {difference.mean():.3f}, {100 * (difference > step).mean():.2f} % differ by more than {step}",
+        f"{what}: mean difference {difference.mean():.3f}, {100 * (difference > step).mean():.2f} % differ by more "
+        f"than {step}",
     )
 
 
@@ -84,7 +85,8 @@ def color_by(*array):
 
 first = show_as("DSM Slices")
 check(list(display.ColorArrayName)[0] == "POINTS", "the first look has an array")
-check([display.DSMSliceXIndex, display.DSMSliceYIndex, display.DSMSliceZIndex] == [12, 10, 9], "slices begin in the middle")
+check([display.DSMSliceXIndex, display.DSMSliceYIndex, display.DSMSliceZIndex] == [12, 10, 9],
+      "slices begin in the middle")
 check(get_covered(first).mean() > 0.1, "the first look shows something")
 check(sum(row["Tiles"] for row in get_rows(display)) > 0, "statistics are those of the slices")
 color_by("POINTS", "waves")
@@ -212,7 +214,8 @@ display.DSMCropping = 0
 
 color_by("POINTS", "waves")
 display.Representation = "DSM Volume"
-display.ScalarOpacityUnitDistance = 1.7  # ParaView's default counts the cells of all ranks, which all have the whole here
+# ParaView's default counts the cells of all ranks, which all have the whole here
+display.ScalarOpacityUnitDistance = 1.7
 display.DSMCapOpacityFromMap = 0
 opacity.Points = [-2.0, 0.0, 0.5, 0.0, 2.0, 0.0, 0.5, 0.0]
 ours = render(view, "CapOfVolume")

@@ -10,7 +10,8 @@ SETTINGS = {
     "Representation": REPRESENTATION, "DSMIsoValue": 0.7, "DSMIsoValueAutomatic": 0,
     "DSMIsoArrayAutomatic": 0, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 0,
     "DSMThreads": 1, "DSMCacheSize": 33, "DSMMemoryOrganization": "Object based",
-    "DSMHostSharing": 0, "DSMCoarserDataWhileMoving": 1, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90, "DSMMemory": 123, "DSMScratchDirectory": "/nowhere/at/all",
+    "DSMHostSharing": 0, "DSMCoarserDataWhileMoving": 1, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
+    "DSMMemory": 123, "DSMScratchDirectory": "/nowhere/at/all",
     "DSMShadows": 1, "DSMLightRadius": 0.02,
     "DSMAmbientOcclusionSamples": 2, "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25,
     "DSMEnvironmentLight": 0.5,
@@ -73,7 +74,8 @@ if can_load_states():
     view = create_view()
     kinds = {
         "RTAnalyticSource": (simple.Wavelet(WholeExtent=[-4, 4] * 3), "Isosurfaces", "Surface"),
-        "CellDataToPointData": (simple.CellDatatoPointData(Input=simple.AMRGaussianPulseSource()), "Surface", "Isosurfaces"),
+        "CellDataToPointData": (simple.CellDatatoPointData(Input=simple.AMRGaussianPulseSource()), "Surface",
+                                "Isosurfaces"),
         "RandomHyperTreeGridSource": (simple.HyperTreeGridRandom(), "Surface", "Isosurfaces"),
     }
     for source, _, saved in kinds.values():

@@ -9,9 +9,12 @@ from paraview import smstate, smtrace
 
 load_plugin()
 CHANGES = {
-    "DSMIsoValue": 0.7, "DSMIsoValueAutomatic": 0, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1, "DSMCacheSize": 33,
-    "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90,
-    "DSMMemory": 123, "DSMScratchDirectory": "/nowhere", "DSMShadows": 1, "DSMLightRadius": 0.02, "DSMAmbientOcclusionSamples": 2,
+    "DSMIsoValue": 0.7, "DSMIsoValueAutomatic": 0, "DSMIsoValues": [0.5, 0.8], "DSMIsoComponent": 1, "DSMThreads": 1,
+    "DSMCacheSize": 33,
+    "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMScheduler": "Central queue",
+    "DSMSilenceLimit": 90,
+    "DSMMemory": 123, "DSMScratchDirectory": "/nowhere", "DSMShadows": 1, "DSMLightRadius": 0.02,
+    "DSMAmbientOcclusionSamples": 2,
     "DSMAmbientOcclusionDistance": 0.75, "DSMReflectivity": 0.25, "DSMMaxBounces": 3,
     "DSMSamplesPerPixel": 2, "DSMDebugView": "Brick", "DSMShowLegend": 0, "DSMShowStatistics": 1,
     "DSMClip": 1, "DSMClipOrigin": [0.25, 0.0, 0.0], "DSMClipNormal": [-1.0, 0.5, 0.0],
@@ -64,7 +67,8 @@ pipe = simple.Cylinder()
 simple.Show(pipe, other)
 simple.Render(other)
 text = smtrace.stop_trace()
-check("cylinder1Display.Representation" in text and "cylinder1Display.DSM" not in text, "a Surface is traced without ours")
+check("cylinder1Display.Representation" in text and "cylinder1Display.DSM" not in text,
+      "a Surface is traced without ours")
 simple.Delete(pipe)
 set_first_look(0)
 check(ballDisplay.DSMLook == "With depth", "a display keeps the look with which it began")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the data suggest no isovalue, an automatic one is the middle of their range, or 0, until they do. State files tell
-whether it is automatic. ParaView's Python alone, or with a server at the port that is given."""
+"""Where the data suggest no isovalue, an automatic one is the middle of their range, or 0, until they do. State files
+tell whether it is automatic. ParaView's Python alone, or with a server at the port that is given."""
 
 from dsm_testing import *
 from paraview import smstate
@@ -19,7 +19,8 @@ def change(source, values):
     simple.Delete(other)
 
 
-cases = {"a constant array": ("0 * distance(piece) + 7", 7.0), "nothing but NaN": ("distance(piece) * float('nan')", 0.0)}
+cases = {"a constant array": ("0 * distance(piece) + 7", 7.0),
+         "nothing but NaN": ("distance(piece) * float('nan')", 0.0)}
 for name, (values, expected) in cases.items():
     source = image_source(image % values)
     display = show_traced(source, view)
@@ -138,6 +139,7 @@ check_equal(render(view), picture, "which the picture has", 0)
 for chosen in ("RTData", ["POINTS", "RTData"]):
     display = show_traced(simple.Wavelet(), view)
     render(view)
-    check(display.DSMIsoArrayAutomatic == 1 and list(display.DSMIsoArray) == ["POINTS", "RTData"], "an array is automatic")
+    check(display.DSMIsoArrayAutomatic == 1 and list(display.DSMIsoArray) == ["POINTS", "RTData"],
+          "an array is automatic")
     display.DSMIsoArray = chosen
     check(display.DSMIsoArrayAutomatic == 0, f"until it is set to {chosen}")

@@ -19,6 +19,7 @@ with Messages() as messages:
     said = messages.text
 print(said, flush=True)
 check(said.count("Load the same version on both sides") == 1, "it is said once")
-check(f"has version {VERSION} on this client" in said and "version 9.9" in said and "on the server" in said, "with both versions")
+check(f"has version {VERSION} on this client" in said and "version 9.9" in said and "on the server" in said,
+      "with both versions")
 check(get_covered(pictures).any(), "and there is a picture")
 simple.Disconnect()

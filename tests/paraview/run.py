@@ -7,8 +7,9 @@
 Each line of LIST has a script and its arguments, separated by tabs; @PORT@ stands for that of the server. Each line of
 REPORT has what became of a script (begun, passed, failed or skipped), its time in seconds, and why it failed.
 
-A script runs in a namespace of its own, because ParaView executes programmable sources in that of the main script, where
-they replace names like `max`. Between two scripts the session is reset, which deletes sources, views and settings."""
+A script runs in a namespace of its own, because ParaView executes programmable sources in that of the main script,
+where they replace names like `max`. Between two scripts the session is reset, which deletes sources, views and
+settings."""
 
 import gc
 import os
@@ -29,7 +30,8 @@ def run(arguments):
 
 
 def reset_memory(simple):
-    """Sets what a session's displays share back to its defaults: a reset leaves the session itself, which keeps them."""
+    """Sets what a session's displays share back to its defaults: a reset leaves the session itself, which keeps
+    them."""
     view = simple.CreateRenderView()
     display = simple.Show(simple.Sphere(), view)
     # They are linked to the settings page.

@@ -4,10 +4,10 @@
 
     run_scripts.py SECONDS LIST COMMAND...
 
-LIST is run.py's. COMMAND starts ParaView with run.py; @LIST@ and @REPORT@ in it stand for files that run.py takes. A script
-that takes longer than SECONDS, or that ParaView does not survive, fails, and ParaView is started again for the others.
-The environment variable DSM_TEST_SCRIPTS names those of the scripts that are to run, as in DSM_TEST_SCRIPTS="Views Time";
-all run without it.
+LIST is run.py's. COMMAND starts ParaView with run.py; @LIST@ and @REPORT@ in it stand for files that run.py takes. A
+script that takes longer than SECONDS, or that ParaView does not survive, fails, and ParaView is started again for the
+others. The environment variable DSM_TEST_SCRIPTS names those of the scripts that are to run, as in
+DSM_TEST_SCRIPTS="Views Time"; all run without it.
 
 Exits with 1 if a script failed, and with 77 if all were skipped."""
 

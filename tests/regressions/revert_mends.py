@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shows that the suite finds faults that it found before: puts each of some mended faults back into the sources, builds,
-and runs the test that has to fail.
+"""Shows that the suite finds faults that it found before: puts each of some mended faults back into the sources,
+builds, and runs the test that has to fail.
 
     revert_mends.py [--build FOLDER] [NUMBER ...]
 
@@ -17,8 +17,8 @@ import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# What was mended, where; the text as it is, and with the fault; the programs to build; the test; and the cases or scripts
-# of it that are enough (GTEST_FILTER, DSM_TEST_SCRIPTS).
+# What was mended, where; the text as it is, and with the fault; the programs to build; the test; and the cases or
+# scripts of it that are enough (GTEST_FILTER, DSM_TEST_SCRIPTS).
 Mend = collections.namedtuple("Mend", "what path text fault targets test cases", defaults=("",))
 VOLUME_FILES = ["files_TestVolumeFiles"], "files.VolumeFiles"
 MENDS = (
@@ -65,7 +65,8 @@ MENDS = (
          "PositionedFile(path).GetBytes() == 0", "false", ["files_TestDamagedFiles"], "files.DamagedFiles"),
     # RenderingDSM
     Mend("images whose samples are nowhere were drawn", "vtk_modules/DSMBricks/build/LatticePlan.cxx",
-         "    RefuseImpossiblePlace(piece);", "    (void)&RefuseImpossiblePlace;", ["unit_rendering"], "unit.rendering"),
+         "    RefuseImpossiblePlace(piece);", "    (void)&RefuseImpossiblePlace;", ["unit_rendering"],
+         "unit.rendering"),
     Mend("a color array that is not there was an error", "vtk_modules/RenderingDSM/data/vtkDSMMeshData.cxx",
          'this->Warning = array + " does not exist', 'this->Message = array + " does not exist',
          ["rendering_TestPolyDataMapper"], "rendering.PolyDataMapper"),
@@ -74,7 +75,8 @@ MENDS = (
          "before != warned.end() && before->second.Options == options", "before != warned.end()", ["DSMRayTracer"],
          "paraview.Scripts.3", "Errors"),
     Mend("the first isosurface was of a vector", "plugin/Representations/domains/vtkSMDSMIsosurfaceArrayDomain.cxx",
-         "array && array->GetNumberOfComponents() == 1", "array && array->GetNumberOfComponents() > 0", ["DSMRayTracer"],
+         "array && array->GetNumberOfComponents() == 1", "array && array->GetNumberOfComponents() > 0",
+         ["DSMRayTracer"],
          "paraview.Scripts.1", "Isovalue"),
     Mend("reflectivity was a property of all of a view", "vtk_modules/RenderingDSM/options/settings.cmake",
          "dsm_setting(Reflectivity OWNER dataset", "dsm_setting(Reflectivity OWNER scene", ["DSMRayTracer"],

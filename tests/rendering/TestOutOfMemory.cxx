@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several MPI ranks; draws nothing. What they exchange for a frame. And: one rank runs out of memory, in turn at each of
-// the larger allocations that it makes between the data and the frame: every rank reports it, none waits, and the next
-// frame is as it should be.
+// Several MPI ranks; draws nothing. What they exchange for a frame. And: one rank runs out of memory, in turn at
+// each of the larger allocations that it makes between the data and the frame: every rank reports it, none waits,
+// and the next frame is as it should be.
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
 #include "vtkDSMRankGroup.h"

@@ -20,7 +20,8 @@
 namespace
 {
 
-/// The ball with several components: values in [0, `most`] that have their largest at other places, and small ones between.
+/// The ball with several components: values in [0, `most`] that have their largest at other places, and small ones
+/// between.
 template <class Array>
 vtkSmartPointer<vtkImageData> MakeComponents(int count, double most = 1.0)
 {

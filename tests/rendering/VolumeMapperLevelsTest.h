@@ -133,8 +133,8 @@ vtkSmartPointer<Amr> MakeAmr(
   return amr;
 }
 
-/// Refined near the ball's surface. `masks`: cells at x < 0 are not there. Trees for which `has` is false of the x of their
-/// corner are not there either.
+/// Refined near the ball's surface. `masks`: cells at x < 0 are not there. Trees for which `has` is false of the x
+/// of their corner are not there either.
 inline vtkSmartPointer<vtkHyperTreeGrid> MakeTrees(
   int branching, bool masks = false, int dimensions = 3,
   const std::function<bool(double)>& has = [](double) { return true; })

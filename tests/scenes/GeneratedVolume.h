@@ -89,8 +89,8 @@ struct Recipe
   int BrickEdge = 8;
   Hole Holes = Hole::None;
   bool Blanked = false; ///< some cells do not hold data
-  /// Makes a rectilinear volume unless it is 1: each cell is so many times as wide as the one before it on x, and as the
-  /// one after it on z. Widths on y are random.
+  /// Makes a rectilinear volume unless it is 1: each cell is so many times as wide as the one before it on x, and
+  /// as the one after it on z. Widths on y are random.
   double Growth = 1.0;
   unsigned Seed = 1;
 };

@@ -33,7 +33,9 @@ ROOMS = {
         "base", "ray", "look", "object", "field", "surface", "slice", "medium", "mesh", "light", "scene", "schedule",
         "frame",
     ],
-    "vtk_modules/DSMVolumeFiles": ["base", "codec", "format", "plain", "hdf", "zarr", "open", "cache", "range", "write"],
+    "vtk_modules/DSMVolumeFiles": [
+        "base", "codec", "format", "plain", "hdf", "zarr", "open", "cache", "range", "write",
+    ],
     "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "part", "frame", "scene", "mapper"],
     "plugin/Representations": [
         "base", "paraview_before_6_0", "paraview_from_6_0", "settings", "domains", "session",

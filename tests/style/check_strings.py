@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Collects the strings that users read, and checks their English.
+"""Collects the strings that users read, the comments of C++ headers, and the subjects of commits, and checks their
+English.
 
 usage: check_strings.py ROOT [--print [FOLDER...]]
 
 With --print, writes the strings as one page for proof-reading: file, line, text. Values that the program inserts are
-shown as {}. Otherwise, reports strings that contain a phrase of the list below, or a sentence that is too long.
+shown as {}. Otherwise, reports texts that contain a phrase of the list below, or a sentence that is too long, and
+subjects that subjects.py finds fault with.
 """
 import ast
 import html
@@ -13,8 +15,11 @@ import pathlib
 import re
 import sys
 
+import subjects
+
 FOLDERS = ["vtk_modules", "plugin", "xml", "tools", "examples", "scripts", "cmake"]
 FILES = ["demo.sh", "test.sh", "CMakeLists.txt"]
+HEADERS = ["vtk_modules", "plugin"]
 MOST_WORDS = 35
 # Strings of fewer words are taken only where a statement reports something.
 FEWEST_WORDS = 4
@@ -24,9 +29,10 @@ REPORTS = re.compile(r"\b(throw|\w*(?:Error|Warning|Fail|Refuse|Log)\w*)\b")
 PHRASES = {
     r"\b\w*(colour|grey|organis|neighbour|metre\b|centre|behaviour|normalis|initialis|recognis|catalogue|licence)\w*":
         "American spelling",
-    r"(?:^|[.:;!?] )(Of|What|Whether|That which) (?!\w+ \w+\?)": "subject first: who or what does something?",
+    r"(?:^|[.:;!?] )(Of|What|Whether|Th(?:at|ose) (?:of|which)) (?!\w+ \w+\?)":
+        "subject first: who or what does something?",
     r"(?<!\b[Tt]here )\bis no (?!longer\b)[a-z]+\b": "'is not a ...'",
-    r"\bis none\b": "'there is no ...', or the valid values",
+    r"\bis none\b(?<![Tt]here is none)": "'there is no ...', or the valid values",
     r"\b[Nn]obody\b": "the program or the user",
     r"\bof (ours|theirs|its own kind)\b": "'our' or a name",
     r"\b(goes|go|went) on (?!to\b)": "'continues'",
@@ -47,6 +53,13 @@ PHRASES = {
     r"\b(cannot|could not|can't) be had\b": "'is not available'",
     r"\bcame to nothing\b": "'failed'",
     r"\bthat many\b": "the number",
+    r"\b[Ww]hoever\b|\bthose who\b": "the program, the rank, the caller",
+    r"(?:^|[.:;!?] )Tells\b": "'Returns', 'Reports'",
+    r"^(So|And|Those)\b|^That (?!\w+ is\b)": "name the thing or the action",
+    r"\b(it is|is it) that\b": "name it",
+    r"\bfor want of\b": "'because there is no ...'",
+    r"\bno more\b(?=[.,:;]|$| (?:and|what)\b)": "'no longer'",
+    r"\bare none of\b": "'are not ...'",
 }
 
 
@@ -164,6 +177,26 @@ def xml_strings(source):
             yield source.count("\n", 0, match.start()) + 1, text
 
 
+MARKS = re.compile(r"^\s*(?:///?<?|/\*[*!]?<?|\*(?!/))\s?|\s*\*/$")
+
+
+def header_comments(source):
+    """Yields the comments of C++, a paragraph at a time: lines of // that follow one another are one comment."""
+    place, first, lines = 0, 0, ""
+    for token in TOKEN.finditer(source + "\n;"):
+        if not token["comment"] or not re.fullmatch(r"\n[ \t]*", source[place:token.start()]):
+            # A command of Doxygen begins a paragraph.
+            for paragraph in re.finditer(r"[^\n]+\n(?:[^\n@][^\n]*\n)*", lines):
+                yield first + lines.count("\n", 0, paragraph.start()), re.sub(r"^@\w+[: ]*", "", paragraph.group())
+            lines = ""
+        if token["comment"]:
+            first = first if lines else source.count("\n", 0, token.start()) + 1
+            text = "\n".join(MARKS.sub("", line).strip() for line in token["comment"].split("\n"))
+            # The column of a table is a sentence.
+            lines += re.sub(r"\b {3,}", ": ", re.sub(r"^SPDX-.*", "", text)) + "\n"
+        place = token.end()
+
+
 READERS = {
     ".h": cxx_strings, ".cxx": cxx_strings, ".txx": cxx_strings, ".py": python_strings, ".sh": shell_strings,
     ".cmake": cmake_strings, ".txt": cmake_strings, ".xml": xml_strings,
@@ -179,6 +212,14 @@ def collect(root, folders):
         suffix = pathlib.Path(path.stem).suffix if path.suffix == ".in" else path.suffix
         if suffix in READERS and path.is_file():
             for line, text in sorted(READERS[suffix](path.read_text())):
+                yield path.relative_to(root).as_posix(), line, " ".join(text.split())
+
+
+def collect_comments(root):
+    """Yields (name, line, text) of all comments of headers."""
+    for path in sorted(path for folder in HEADERS for path in (root / folder).rglob("*")):
+        if re.search(r"\.(h|txx|h\.in)$", path.name) and path.is_file():
+            for line, text in header_comments(path.read_text()):
                 yield path.relative_to(root).as_posix(), line, " ".join(text.split())
 
 
@@ -203,15 +244,24 @@ def main():
             last = name
             print(f"  {line}: {text}")
         return 0
-    count = 0
-    faults = []
-    for name, line, text in collect(root, FOLDERS):
-        count += 1
+    # The collectors themselves must not fall silent.
+    sample = "// SPDX-\n/// Of a.\nint a; ///< Of b,\n       ///< of c.\n/**\n * @brief Of d\n *\n * Of e. */\n" \
+             "int b;\n// f\n// g. Of h."
+    found = [line for line, text in header_comments(sample) if list(find_faults(text))]
+    faults = [] if found == [2, 3, 6, 8, 10] else [f"the sample of comments: faults in lines {found}"]
+    if len(list(subjects.find_form_faults("x" * 80 + ";."))) != 4:
+        faults.append("the sample of a subject")
+    strings, comments = list(collect(root, FOLDERS)), list(collect_comments(root))
+    for name, line, text in strings + comments:
         faults += [f"{name}:{line}: {fault}\n    {text}" for fault in find_faults(text)]
+    commits, reason = subjects.list_subjects(root)
+    for name, text in commits:
+        faults += [f"{name}: {fault}\n    {text}" for fault in [*subjects.find_form_faults(text), *find_faults(text)]]
     print("\n".join(faults))
-    print(f"{count} strings, {len(faults)} faults")
-    # The collector itself must not fall silent.
-    return 1 if faults or count < 700 else 0
+    print(f"{len(strings)} strings, {len(comments)} comments, {len(commits)} subjects of commits, {len(faults)} faults")
+    if reason:
+        print(f"skipped the subjects of commits: {reason}")
+    return 1 if faults or len(strings) < 700 or len(comments) < 3000 else 0
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-/// Nested leaves of several levels, kept in the plainest way: for each cell of the finest lattice, the level of the leaf that
-/// has it. Places are in cells of level 0.
+/// Nested leaves of several levels, kept in the plainest way: for each cell of the finest lattice, the level of the
+/// leaf that has it. Places are in cells of level 0.
 class LevelModel
 {
 public:
@@ -116,7 +116,8 @@ private:
   std::vector<std::int8_t> Levels;
 };
 
-/// Several levels with boxes, scattered leaves and, if wanted, holes, in all places: at the border, at edges, at corners.
+/// Several levels with boxes, scattered leaves and, if wanted, holes, in all places: at the border, at edges, at
+/// corners.
 inline LevelModel CreateRandomLevels(unsigned seed, bool withHoles)
 {
   using bricks::Index3;

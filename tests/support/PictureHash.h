@@ -9,8 +9,9 @@
 #include <cstdint>
 #include <cstring>
 
-/// A number that two pictures share if, for all practical purposes, they are equal bit for bit: 64-bit FNV-1a over words
-/// of eight bytes of size and channels, with a fold that carries their high bits down. Tests have recorded it.
+/// A number that two pictures share if, for all practical purposes, they are equal bit for bit: 64-bit FNV-1a over
+/// words of eight bytes of size and channels, with a fold that carries their high bits down. Tests have recorded
+/// it.
 inline std::uint64_t GetPictureHash(const rt::Picture& picture)
 {
   std::uint64_t hash = 0xcbf29ce484222325u;

@@ -5,7 +5,8 @@
 class vtkPVXMLElement;
 class vtkSMProperty;
 
-/// Hints of a display's properties, for the panel and for ParaView's Python. Those in a definition are those of all displays.
+/// Hints of a display's properties, for the panel and for ParaView's Python. Those in a definition are those of all
+/// displays.
 class vtkPVDSMHints
 {
 public:

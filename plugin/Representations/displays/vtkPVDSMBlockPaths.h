@@ -12,8 +12,8 @@ class vtkDataObject;
 class vtkPartitionedDataSetCollection;
 class vtkUniformGridAMR;
 
-/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by: those of multi-block datasets
-/// and of collections, and levels of AMR. Local; does not keep the dataset alive.
+/// Finds a dataset's blocks by the paths that ParaView's Multiblock Inspector names them by: those of multi-block
+/// datasets and of collections, and levels of AMR. Local; does not keep the dataset alive.
 class vtkPVDSMBlockPaths
 {
 public:
@@ -31,8 +31,8 @@ public:
   /// Returns the flat indices of the blocks of AMR on levels to which no path leads; none of other datasets.
   std::vector<unsigned int> FindHiddenOfAmr(const std::vector<std::string>& paths) const;
 
-  /// Gives each block of a multi-block dataset or of a collection the number that a Surface gives it, in ParaView's array
-  /// vtkBlockColors; so many numbers take turns.
+  /// Gives each block of a multi-block dataset or of a collection the number that a Surface gives it, in ParaView's
+  /// array vtkBlockColors; so many numbers take turns.
   static void NumberBlocks(vtkDataObject* data, unsigned int distinctNumbers);
 
 private:

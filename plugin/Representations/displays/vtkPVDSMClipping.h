@@ -30,8 +30,8 @@ public:
   /// Gives the mapper its clipping planes, `dataToWorld` being where the dataset is.
   void ApplyTo(vtkAbstractMapper* mapper, vtkMatrix4x4* dataToWorld) const;
 
-  /// Returns what cuts a box in the world away as a whole, "clipping plane" or "cropping box", where one of the planes that
-  /// the mapper was given does; else null.
+  /// Returns what hides all of a box in the world ("clipping plane" or "cropping box"), if one of the mapper's
+  /// clipping planes does; else null.
   const char* FindWhatHides(vtkAbstractMapper* mapper, const vtkBoundingBox& box) const;
 
   /// Returns the visible part of polygons in the dataset's coordinates.

@@ -45,7 +45,7 @@ public:
   void SetPickable(int pickable) override;
 
   /**
-   * Whether the edges of polygons are drawn on the surface; off by default.
+   * Draws the edges of polygons on the surface; off by default.
    */
   void SetShowEdges(bool show);
 
@@ -60,9 +60,8 @@ public:
 
   ///@{
   /**
-   * What is shown of the dataset: the side of a plane (world coordinates) that its normal points to,
-   * the inside of a box (x, y and z from, to; in the dataset's coordinates), which may be moved, turned
-   * and scaled.
+   * The visible part of the dataset: the side of a plane (world coordinates) that its normal points to, the inside
+   * of a box (x, y and z from, to; in the dataset's coordinates), which may be moved, turned and scaled.
    */
   void SetClip(bool clip) { this->Display->Clipping.Clips = clip; }
   void SetClipOrigin(double x, double y, double z) { this->Display->Clipping.Origin = { x, y, z }; }
@@ -96,13 +95,13 @@ public:
   ///@}
 
   /**
-   * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look alike are
-   * together, with a vtkPVDSMExportLook.
+   * This rank's part of the surface; polygons of blocks that are hidden are left out, those of blocks that look
+   * alike are together, with a vtkPVDSMExportLook.
    */
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 
   /**
-   * What shall tell of the view's frames; null on the client.
+   * Sets the object that reports the view's frames; null on the client.
    */
   void SetFrameReport(vtkPVDSMFrameReport* report);
 

@@ -41,7 +41,7 @@ public:
     SHOW_SURFACE = 1
   };
   /**
-   * What is shown of the dataset: its isosurfaces (the default) or its outer surface.
+   * Shows the dataset's isosurfaces (the default) or its outer surface.
    */
   void SetShow(int part);
 
@@ -53,8 +53,8 @@ public:
 
   ///@{
   /**
-   * What is shown of a dataset of several blocks: those that one of these paths leads to, as ParaView's
-   * Multiblock Inspector chooses them; without any, all.
+   * The visible blocks of a dataset: those that one of these paths leads to, as ParaView's Multiblock Inspector
+   * chooses them. Without any path, all blocks are visible.
    */
   void AddBlockSelector(const char* selector);
   void RemoveAllBlockSelectors();
@@ -71,7 +71,7 @@ public:
   ///@}
 
   /**
-   * So many colors take turns where ParaView's array vtkBlockColors colors the blocks, as it numbers them.
+   * Number of colors that take turns if ParaView's array vtkBlockColors colors the blocks, as it numbers them.
    */
   void SetBlockColorsDistinctValues(int number);
   /**
@@ -96,8 +96,8 @@ public:
 
   ///@{
   /**
-   * What isosurfaces are shown: those of a list of values; while it is empty, the one of a value that the data suggest
-   * (default), or, where it is not automatic, the one of the single value.
+   * The visible isosurfaces: those of a list of values. If the list is empty, the one isosurface of a value that
+   * the data suggest (default), or of the single value if that is not automatic.
    */
   void SetNumberOfIsoValues(int number);
   void SetIsoValue(int index, double value);
@@ -118,8 +118,8 @@ public:
 
   ///@{
   /**
-   * Whether the faces that the plane and the box cut are shown, of isosurfaces on which side (vtkDSMVolumeMapper::CapSides),
-   * of volumes whether with the opacities of their opacity function.
+   * Shows the faces that the plane and the box cut. Isosurfaces have them on one side
+   * (vtkDSMVolumeMapper::CapSides); volumes may have them with the opacities of their opacity function.
    */
   void SetCap(bool cap);
   void SetCapSide(int side);
@@ -128,8 +128,8 @@ public:
 
   ///@{
   /**
-   * The slices that vtkPVDSMSliceRepresentation shows: for each axis one by its index (of the samples, from 0), and a list
-   * of further ones; and a plane in world coordinates.
+   * The slices that vtkPVDSMSliceRepresentation shows: for each axis one by its index (of the samples, from 0), and
+   * a list of further ones; and a plane in world coordinates.
    */
   void SetSliceX(bool isShown) { this->Slicing.Axes[0].IsShown = isShown; }
   void SetSliceY(bool isShown) { this->Slicing.Axes[1].IsShown = isShown; }
@@ -163,7 +163,7 @@ public:
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 
   /**
-   * What shall tell of the view's frames; null on the client.
+   * Sets the object that reports the view's frames; null on the client.
    */
   void SetFrameReport(vtkPVDSMFrameReport* report);
 
@@ -204,7 +204,7 @@ private:
   /// Gives the surfaces the coefficients of the superclass, and their backs their look.
   void ChooseLook();
   void RemoveHiddenBlocks(vtkDataObject* data) const;
-  /// Tells the mapper how the blocks look that its data have now.
+  /// Gives the mapper the looks of the blocks in its current data.
   void ChooseBlockLooks();
   void ColorBlocksByArray(vtkDataObject* data);
   /// Null without an input.

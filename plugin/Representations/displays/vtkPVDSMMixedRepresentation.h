@@ -3,8 +3,8 @@
  * @class   vtkPVDSMMixedRepresentation
  * @brief   shows isosurfaces of some blocks of a dataset, and the outer surface of the others, ray traced by all ranks
  *
- * Blocks in three dimensions that are image data, rectilinear grids or hyper tree grids have isosurfaces. All other blocks
- * show their surface at the same time. With SHOW_SURFACE, all blocks show it.
+ * Blocks in three dimensions that are image data, rectilinear grids or hyper tree grids have isosurfaces. All other
+ * blocks show their surface at the same time. With SHOW_SURFACE, all blocks show it.
  */
 
 #ifndef vtkPVDSMMixedRepresentation_h
@@ -22,13 +22,13 @@ public:
   static vtkPVDSMMixedRepresentation* New();
   vtkTypeMacro(vtkPVDSMMixedRepresentation, vtkPVDSMImageRepresentation);
 
-  /// Whether ranks need ghost cells beside isosurfaces, for the surfaces' sake. Off by default: on several ranks, sources of hyper
-  /// tree grids that are asked for ghost cells make trees twice.
+  /// Requests ghost cells while isosurfaces are shown, too: the outer surfaces of other blocks need them. Off by
+  /// default, because on several ranks, sources of hyper tree grids make trees twice if ghost cells are requested.
   void SetNeedsGhostCells(bool needs) { this->NeedsGhostCells = needs; }
 
   void SetVisibility(bool visible) override;
   vtkDataObject* GetRenderedDataObject(int port) override;
-  /// Those of surfaces only where no actor of the view's renderer has them.
+  /// The triangles of outer surfaces are included only if no actor of the view's renderer has them.
   std::vector<vtkSmartPointer<vtkPolyData>> GetTriangles() override;
 
 protected:

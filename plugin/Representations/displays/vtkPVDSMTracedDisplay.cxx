@@ -89,7 +89,7 @@ bool vtkPVDSMTracedDisplay::RemoveFromView(vtkView* view)
   return vtkPVRenderView::SafeDownCast(view) != nullptr;
 }
 
-// ParaView adds all ways to show a dataset to its view; those that nobody has chosen must cost nothing.
+// ParaView adds all ways to show a dataset to its view; those that the user has not chosen must cost nothing.
 void vtkPVDSMTracedDisplay::SetVisibility(bool visible)
 {
   this->Prop->SetVisibility(visible);

@@ -97,7 +97,7 @@ private:
   void Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
   void Leave();
   void ShareOptions();
-  /// Warns, on the first rank, when a plane or box begins to hide the dataset as a whole.
+  /// Warns, on the first rank, when a plane or box begins to hide the entire dataset.
   void TellWhatHides();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();

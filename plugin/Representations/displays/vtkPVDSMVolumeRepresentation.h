@@ -66,8 +66,8 @@ public:
   void SetBlendMode(int mode);
 
   /**
-   * Whether of two components the first is colored and the second gives the opacity, and of four the first three are the color
-   * and the fourth gives the opacity. So they do, too, where scalars are not mapped to colors.
+   * If true, the first of two components is colored and the second gives the opacity; the first three of four are
+   * the color and the fourth gives the opacity. The same holds if scalars are not mapped to colors.
    */
   void SetMultiComponentsMapping(bool maps);
 

@@ -33,8 +33,7 @@ private:
   void OnEvent(vtkSMProperty* property, unsigned long event);
   void OnSlider(vtkSMProperty* single);
   void OnSliceIndex(vtkSMProperty* index);
-  /// Returns whether a slider is being dragged, or was until now. `differs`: it shows another value
-  /// than the property has.
+  /// Returns whether a slider is being dragged, or was until now. `differs`: its value differs from the property's.
   bool IsDragged(vtkSMProperty* property, bool differs);
   void OnList(vtkSMProperty* list, unsigned long event);
   void BeginList(vtkSMProxy* representation);
@@ -45,7 +44,7 @@ private:
   vtkSMProperty* Choice = nullptr; ///< choice of an array or component, while it is changing
   vtkSMProperty* Begun = nullptr;  ///< a list to which the panel has added a first value
   vtkSMProperty* Dragged =
-    nullptr; ///< property whose slider shows another value than the property has
+    nullptr; ///< property whose slider shows a value that differs from its own
 };
 
 #endif

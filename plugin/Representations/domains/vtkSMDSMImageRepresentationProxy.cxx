@@ -150,8 +150,8 @@ void vtkSMDSMImageRepresentationProxy::LoadState(
   this->Components = CountComponents(this->GetProperty(Array));
 }
 
-/// Their definitions have no default, so that Python states have them in any case. The default of what is shown comes from
-/// the data; a state file without it shows what it did before there was a choice.
+/// Their definitions have no default, so that Python states have them in any case. The default of what is shown
+/// comes from the data; a state file without it shows what it did before there was a choice.
 int vtkSMDSMImageRepresentationProxy::ReadXMLAttributes(
   vtkSMSessionProxyManager* manager, vtkPVXMLElement* element)
 {
@@ -209,8 +209,8 @@ bool vtkSMDSMImageRepresentationProxy::ChooseComponent()
   return isOther;
 }
 
-/// The data have been updated, and with them the domains; then the view renders. Data that come after their display left
-/// it without an array.
+/// The data have been updated, and with them the domains; then the view renders. Data that come after their display
+/// left it without an array.
 void vtkSMDSMImageRepresentationProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMDSMImageRepresentationProxy
- * @brief   keeps track of which isosurface array and isovalue nobody has chosen
+ * @brief   keeps track of whether the isosurface array and the isovalue are automatic
  *
- * DSMIsoArrayAutomatic and DSMIsoValueAutomatic are on at first. Whoever sets DSMIsoArray or DSMIsoValue (the panel, a
- * script, an animation, a state file) switches the one or the other off, because ParaView tells this proxy of it. What
- * this class sets itself leaves them on, and the defaults of their domains switch them on again. An automatic array that
- * the data do not have any more becomes another before the view renders; vtkPVDSMIsovalueWatch gives an automatic
- * isovalue its number after the render.
+ * DSMIsoArrayAutomatic and DSMIsoValueAutomatic are on at first. When the panel, a script, an animation or a state
+ * file sets DSMIsoArray or DSMIsoValue, ParaView notifies this proxy, which switches the one or the other off.
+ * Values that this class sets itself leave them on, and the defaults of their domains switch them on again. If the
+ * data no longer have an automatic array, another one replaces it before the view renders; vtkPVDSMIsovalueWatch
+ * gives an automatic isovalue its number after the render.
  *
  * Another array whose number of components differs is shown by its magnitude, as ParaView colors by.
  *
@@ -33,8 +33,8 @@ public:
   vtkTypeMacro(vtkSMDSMImageRepresentationProxy, vtkSMDSMRepresentationProxy);
 
   /**
-   * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on that it
-   * is automatic.
+   * Calls `choose`, which sets the array, the isovalue or what is shown of a proxy of this class, and switches on
+   * that it is automatic.
    */
   static void SetAutomatic(vtkSMProperty* property, const std::function<void()>& choose);
 
@@ -50,7 +50,8 @@ public:
 
   bool IsIsovalueAutomatic();
   /**
-   * From now on, until somebody sets the isovalue. Until the next render it has its domain's default.
+   * Makes the isovalue automatic until the user or a script sets it. Until the next render it has its domain's
+   * default.
    */
   void SetIsovalueAutomatic();
   /**
@@ -60,7 +61,7 @@ public:
 
   ///@{
   /**
-   * Whether somebody has set the isovalue since the last render.
+   * Returns whether the user or a script has set the isovalue since the last render.
    */
   bool IsIsovalueNew() const { return this->IsNew; }
   void NoteRender() { this->IsNew = false; }
@@ -86,7 +87,7 @@ private:
   bool ChooseComponent();
   void TellRange();
 
-  bool IsChoosing = false; ///< properties change that nobody has set
+  bool IsChoosing = false; ///< this class is changing properties
   bool IsLoading = false;  ///< all properties become what they were
   bool IsNew = false;
   bool IsShownAutomatic = false; ///< what is shown is the data's default

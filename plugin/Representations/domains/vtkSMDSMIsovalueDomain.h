@@ -3,11 +3,12 @@
  * @class   vtkSMDSMIsovalueDomain
  * @brief   the range of an array, of which the default is the isovalue that the data suggest
  *
- * The panel's reset button takes it. What the data suggest is known once they have been shown; until then, and where
- * they suggest none, the default is that of ParaView's ArrayRangeDomain. A display's single isovalue is automatic by
- * default, and begins with a number near the middle of the range that nobody would enter: ParaView does not tell when a
- * property is set to the number that it has. If the shown data have fill values that nothing declares, the range is that of
- * the other values: a slider over -3.4e38 to 1 is of no use. The name is what ParaView makes of the element DSMIsovalueDomain.
+ * The panel's reset button takes it. The suggested value is known once the data have been shown; until then, and if
+ * the data suggest none, the default is that of ParaView's ArrayRangeDomain. A display's single isovalue is
+ * automatic by default, and begins with a number near the middle of the range that a user would hardly enter:
+ * ParaView sends no event when a property is set to the number that it has. If the shown data have fill values that
+ * nothing declares, the range is that of the other values: a slider over -3.4e38 to 1 is of no use. The name is
+ * what ParaView makes of the element DSMIsovalueDomain.
  */
 
 #ifndef vtkSMDSMIsovalueDomain_h

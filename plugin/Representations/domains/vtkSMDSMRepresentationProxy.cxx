@@ -22,7 +22,7 @@ constexpr const char* Movements[] = { "DSMCroppingPosition", "DSMCroppingRotatio
   "DSMCroppingScale" };
 constexpr const char* Places[] = { "DSMClipOrigin", Box, "DSMSliceOrigin" };
 
-/// What the data give; empty where they give nothing.
+/// The default that the data give; empty if they give none.
 std::vector<double> FindDefault(vtkSMVectorProperty* property)
 {
   const auto other = vtkSmartPointer<vtkSMVectorProperty>::Take(property->NewInstance());

@@ -3,8 +3,9 @@
  * @class   vtkSMDSMRepresentationProxy
  * @brief   lets what the user has not placed follow data that move
  *
- * The origins of planes and the cropping box begin with the defaults of their domains, which the data give. Where they still have what the last data gave, other data (a time step, an edited source) give them anew,
- * before the view renders. A cropping box that was moved, turned or scaled stays.
+ * The origins of planes and the cropping box begin with the defaults of their domains, which the data give. Where
+ * they still have what the last data gave, other data (a time step, an edited source) give them anew, before the
+ * view renders. A cropping box that was moved, turned or scaled stays.
  *
  * The name is what ParaView makes of the element DSMRepresentationProxy.
  */

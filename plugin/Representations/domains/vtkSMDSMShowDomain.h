@@ -3,8 +3,8 @@
  * @class   vtkSMDSMShowDomain
  * @brief   the parts of a dataset that a display can show, of which the default depends on the data
  *
- * The default is the first entry, isosurfaces, where the data are not flat and have an array that can have them; else the second one, the
- * outer surface. The name is what ParaView makes of the element DSMShowDomain.
+ * The default is the first entry, isosurfaces, where the data are not flat and have an array that can have them;
+ * else the second one, the outer surface. The name is what ParaView makes of the element DSMShowDomain.
  */
 
 #ifndef vtkSMDSMShowDomain_h

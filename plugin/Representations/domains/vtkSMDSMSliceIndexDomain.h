@@ -30,7 +30,7 @@ public:
   void SetNumberOfSamples(int count);
 
   /**
-   * Whether the property has the last default, or no index at all: it follows the data.
+   * Returns whether the property has the last default, or no index at all: then it follows the data.
    */
   bool IsAutomatic();
 

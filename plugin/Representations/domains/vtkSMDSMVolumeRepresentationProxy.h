@@ -3,9 +3,9 @@
  * @class   vtkSMDSMVolumeRepresentationProxy
  * @brief   chooses the array of a volume, or of slices, when the user first asks for them
  *
- * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where there is
- * none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so that the user can
- * choose none. Slices are in the middle of the data until the user places them. The panel shows
+ * A volume, and slices, show the array that colors their dataset. ParaView chooses one for its own Volume where
+ * there is none yet; this does it for DSM Volume and DSM Slices, before the view renders: once for each dataset, so
+ * that the user can choose none. Slices are in the middle of the data until the user places them. The panel shows
  * what shades a volume and sets its density without the gear button.
  *
  * The name is what ParaView makes of the element DSMVolumeRepresentationProxy.

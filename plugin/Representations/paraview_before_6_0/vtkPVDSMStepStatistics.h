@@ -4,8 +4,8 @@
 
 class vtkSIProxyDefinitionManager;
 
-/// Before VTK 9.4, vtkTemporalStatistics silently computes wrong sums of arrays that are not VTK's own, such as those of
-/// vtkDSMVolumeReader.
+/// Before VTK 9.4, vtkTemporalStatistics silently computes wrong sums of arrays that are not VTK's own, such as
+/// those of vtkDSMVolumeReader.
 class vtkPVDSMStepStatistics
 {
 public:

@@ -26,7 +26,7 @@ public:
 
   ///@{
   /**
-   * Whether the triangles are gathered, not only their number. Off by default.
+   * If true, gathers the triangles, not only their number. Off by default.
    */
   vtkSetMacro(WithTriangles, bool);
   vtkGetMacro(WithTriangles, bool);

@@ -13,8 +13,8 @@ class vtkActor;
 class vtkAppendPolyData;
 class vtkPolyData;
 
-/// How blocks of what is exported look that are not to look like the rest. It travels from server to client in the field
-/// data of the blocks' polygons.
+/// How blocks of what is exported look that are not to look like the rest. It travels from server to client in the
+/// field data of the blocks' polygons.
 struct vtkPVDSMExportLook
 {
   std::optional<std::array<double, 3>> Color; ///< in place of the color array as well

@@ -17,8 +17,8 @@ class vtkPolyData;
 class vtkPVDSMIsosurfaceGeometry
 {
 public:
-  /// For selections; empty if that fails. Cells and points of images are counted in `source`, from which the mapper's data
-  /// came: since then, another filter may have asked it for more ghost cells. May be null.
+  /// For selections; empty if that fails. Cells and points of images are counted in `source`, from which the
+  /// mapper's data came: since then, another filter may have asked it for more ghost cells. May be null.
   static vtkSmartPointer<vtkMultiBlockDataSet> Make(
     vtkDSMScene* scene, vtkDSMVolumeMapper* mapper, vtkDataObject* source);
 

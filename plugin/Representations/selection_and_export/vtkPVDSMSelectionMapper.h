@@ -3,10 +3,10 @@
  * @class   vtkPVDSMSelectionMapper
  * @brief   draws what a traced dataset shows as geometry, while ParaView selects
  *
- * ParaView finds what is under the pointer by drawing numbers of cells and points, after the depth of
- * what is in front. For that each rank draws the triangles of its own data, so that a selection is what it is for a Surface. The
- * triangles are there only as long as it takes: they are made when the first pass asks for them, and
- * freed by the next picture. Other pictures show nothing of it.
+ * ParaView finds what is under the pointer by drawing numbers of cells and points, after the depth of what is in
+ * front. For that each rank draws the triangles of its own data, so that a selection is what it is for a Surface.
+ * The triangles are there only as long as it takes: they are made when the first pass asks for them, and freed by
+ * the next picture. Other pictures show nothing of it.
  */
 
 #ifndef vtkPVDSMSelectionMapper_h
@@ -41,7 +41,7 @@ public:
   void SetSource(std::function<vtkSmartPointer<vtkDataObject>()> source);
 
   /**
-   * Whether ParaView is selecting; else nothing is drawn.
+   * Set while ParaView is selecting; otherwise the mapper draws nothing.
    */
   void SetSelecting(bool selecting);
 

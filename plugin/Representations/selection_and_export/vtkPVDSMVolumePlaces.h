@@ -14,8 +14,8 @@ class vtkMatrix4x4;
 class vtkMultiBlockDataSet;
 class vtkRenderer;
 
-/// The places that the pixels of a picture of volumes show, for selections: where half of the light is covered. Each rank
-/// draws those in its own data, as points that know their cells and the nearest points.
+/// The places that the pixels of a picture of volumes show, for selections: where half of the light is covered.
+/// Each rank draws those in its own data, as points that know their cells and the nearest points.
 class vtkPVDSMVolumePlaces
 {
 public:

@@ -88,8 +88,8 @@ void AskFor(vtkSMSessionClient* session)
   }
 }
 
-/// ParaView makes the proxy of a new settings page when the plugin was loaded, as a change that can be undone. Here it is
-/// made before, as one that cannot. Only the application has changes to undo.
+/// ParaView makes the proxy of a new settings page when the plugin was loaded, as a change that can be undone. Here
+/// it is made before, as one that cannot. Only the application has changes to undo.
 void MakeSettings(vtkSMSession* session)
 {
   vtkSMSessionProxyManager* const proxies = session->GetSessionProxyManager();

@@ -90,7 +90,7 @@ bool CanRefine(vtkPVRenderView* view)
   return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
 }
 
-/// Tells the scene which windows are one display (pvserver's --tdx and --tdy).
+/// Sets which of the scene's windows are one display (pvserver's --tdx and --tdy).
 void SetTileDisplay(vtkDSMScene* scene)
 {
   auto* configuration = vtkRemotingCoreConfiguration::GetInstance();
@@ -131,8 +131,8 @@ bool ShowsSelection(vtkPVDataRepresentation* shown)
     source->GetNumberOfInputConnections(1) > 0;
 }
 
-/// Returns whether the view shows any dataset in another representation than the plugin's, or a selection. Axes and text
-/// are not composite representations and are ignored.
+/// Returns whether the view shows any dataset in a representation that is not the plugin's, or a selection. Axes
+/// and text are not composite representations and are ignored.
 bool ShowsOthers(vtkView* view)
 {
   for (int number = 0; view && number < view->GetNumberOfRepresentations(); ++number)
@@ -322,8 +322,8 @@ void vtkPVDSMDelivery::Choose(
     report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
   scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
-  // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how coarse it
-  // is at least.
+  // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how
+  // coarse it is at least.
   const bool usesLevels =
     view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view);
   scene->SetInteractiveReduction(

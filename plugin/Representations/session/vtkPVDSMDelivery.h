@@ -51,8 +51,8 @@ public:
   /// Returns whether the view renders an image that is kept, such as a screenshot.
   static bool IsCapturing(vtkView* view);
 
-  /// For REQUEST_RENDER: the way that suits what else the view shows, and what it renders for.
-  /// `report` tells what the client is doing; may be null.
+  /// For REQUEST_RENDER: chooses the way that suits the view's other contents, and the purpose of the render.
+  /// `report` knows the state of the client; may be null.
   static void Choose(
     vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, vtkPVDSMFrameReport* report);
 

@@ -28,13 +28,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Whose scene to read from; null when the representation is in no view. A dataset has a representation for each way in
-   * which it can be shown, and all of them tell of the same frames.
+   * Sets the view whose scene is read; null if the representation is in no view. A dataset has a representation for
+   * each way in which it can be shown, and all of them report the same frames.
    */
   void SetView(vtkPVRenderView* view);
 
   /**
-   * Whose isovalue to tell; null for a mesh.
+   * Sets the mapper whose isovalue is reported; null for a mesh.
    */
   void SetVolume(vtkDSMVolumeMapper* volume);
 
@@ -77,8 +77,8 @@ public:
 
   ///@{
   /**
-   * Whether the client goes on rendering a still view until it is refined, so that a render need not
-   * take all samples. Off by default.
+   * If true, the client continues to render a still view until it is refined, so a render need not take all
+   * samples. Off by default.
    */
   void SetProgressive(bool progressive);
   bool GetProgressive();
@@ -86,7 +86,7 @@ public:
 
   ///@{
   /**
-   * Whether the user moves the camera, so that no render need take all samples, also one whose picture is kept: web
+   * Set while the user moves the camera. Then no render need take all samples, even if its picture is kept: web
    * applications send such pictures to the browser, one after the other. Off by default.
    */
   void SetInteracting(bool interacting);

@@ -102,7 +102,7 @@ vtkSMProxy* FindShown(vtkSMProxy* representation)
   return own ? own : representation;
 }
 
-/// Calls `visit` with what tells of the frames that each traced dataset is in.
+/// Calls `visit` with the frame report of each traced dataset.
 template <class Visit>
 void ForEachReport(vtkSMProxy* view, const Visit& visit)
 {

@@ -4,8 +4,8 @@
 
 class vtkSMSession;
 
-/// Client and server have a plugin each. What a newer one offers, an older one on the other side would
-/// ignore without a word.
+/// Client and server have a plugin each. An older one would silently ignore properties that a newer one on the
+/// other side offers.
 class vtkPVDSMVersionCheck
 {
 public:

@@ -12,7 +12,7 @@ vtkStandardNewMacro(vtkPVDSMVersionInformation);
 
 vtkPVDSMVersionInformation::vtkPVDSMVersionInformation()
 {
-  this->RootOnly = 0; // each rank is told that its client has the plugin
+  this->RootOnly = 0; // each rank learns that its client has the plugin
 }
 
 vtkPVDSMVersionInformation::~vtkPVDSMVersionInformation() = default;

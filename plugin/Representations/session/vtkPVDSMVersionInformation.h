@@ -28,7 +28,7 @@ public:
   const std::string& GetVersion() const { return this->Version; }
 
   /**
-   * Of this process; the object does not matter.
+   * Takes the version in this process; the object does not matter.
    */
   void CopyFromObject(vtkObject* object) override;
   void AddInformation(vtkPVInformation* other) override;

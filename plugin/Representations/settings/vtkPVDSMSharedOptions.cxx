@@ -52,7 +52,7 @@ struct vtkPVDSMSharedOptions::Registry
     }
   }
 
-  /// Of `values`, or of a copy of `like` without.
+  /// Returns the options of `values`; without these, of a copy of `like`.
   static vtkPVDSMSharedOptions* Get(
     vtkObject* owner, Part part, vtkSMProxy* like, vtkSMProxy* values = nullptr);
 };

@@ -13,14 +13,15 @@ class vtkPVRenderView;
 class vtkSMProxy;
 
 /// Keeps the properties of displays alike that belong to a view (its light) or to a session (its memory, which the
-/// settings page has, too). A display or page that gets a value passes it on to all others at once, so every panel shows
-/// the value that applies: the most recent one. On processes that have proxies: the client, and rank 0 of pvbatch.
+/// settings page has, too). A display or page that gets a value passes it on to all others at once, so every panel
+/// shows the value that applies: the most recent one. On processes that have proxies: the client, and rank 0 of
+/// pvbatch.
 ///
-/// A display joins when it enters its view, with all the ways in which it can be shown: the panel shows the values of one
-/// of them, whichever is traced. It gets the current values. It passes on its own where they are neither the defaults nor
-/// the settings page's. While a state file is being loaded, a display that is traced passes on all of its light, and one
-/// that is not passes on nothing. The look of a view (DSMLook) is shared by the displays that are traced in it only: a
-/// display begins with that of the settings page.
+/// A display joins when it enters its view, with all the ways in which it can be shown: the panel shows the values
+/// of one of them, whichever is traced. It gets the current values. It passes on its own where they are neither the
+/// defaults nor the settings page's. While a state file is being loaded, a display that is traced passes on all of
+/// its light, and one that is not passes on nothing. The look of a view (DSMLook) is shared by the displays that
+/// are traced in it only: a display begins with that of the settings page.
 class vtkPVDSMSharedOptions
 {
 public:

@@ -25,7 +25,8 @@ with h5py.File(path("ball.h5"), "w") as file:
 save_zarr("ball.zarr", ball, compressor=Blosc("zstd"), chunks=(9, 40, 20))
 # As climate models write it: packed, on levels that are not evenly spaced, from north to south.
 with netCDF4.Dataset(path("ball.nc"), "w") as file:
-    for name, numbers in (("lev", np.sinh(2 * np.linspace(-1, 1, edges[2]))), ("lat", np.linspace(1, -1, edges[1])), ("lon", np.linspace(-1, 1, edges[0]))):
+    for name, numbers in (("lev", np.sinh(2 * np.linspace(-1, 1, edges[2]))), ("lat", np.linspace(1, -1, edges[1])),
+                          ("lon", np.linspace(-1, 1, edges[0]))):
         file.createDimension(name, len(numbers))
         file.createVariable(name, "f8", (name,))[:] = numbers
     packed = file.createVariable("f", "i2", ("lev", "lat", "lon"), zlib=True, chunksizes=(16, 10, 13))

@@ -71,7 +71,8 @@ with h5py.File(path("large/packed.h5"), "w") as file:
 short = h5py.h5t.STD_I16LE.copy()
 short.set_precision(12)
 short.set_offset(3)
-stored_as = {"bits12": (short, "<i2"), "half": (h5py.h5t.IEEE_F16LE, "<f4"), "names": (h5py.h5t.py_create(np.dtype("bool"), logical=True), "|i1")}
+stored_as = {"bits12": (short, "<i2"), "half": (h5py.h5t.IEEE_F16LE, "<f4"),
+             "names": (h5py.h5t.py_create(np.dtype("bool"), logical=True), "|i1")}
 for name, (kind, dtype) in stored_as.items():
     with h5py.File(path(name + ".h5"), "w") as file:
         whole = h5py.h5s.create_simple(SIZE[::-1])

@@ -46,7 +46,8 @@ for name, dtype, teem, endian in (
     note(name, [(None, np.dtype(dtype).name)])
 
 # Compressed, and in several files.
-for name, how, end in (("gzip.nrrd", "gzip:9", ""), ("bzip2.nhdr", "bzip2", "raw.bz2"), ("gzip.nhdr", "gzip", "raw.gz")):
+for name, how, end in (("gzip.nrrd", "gzip:9", ""), ("bzip2.nhdr", "bzip2", "raw.bz2"),
+                       ("gzip.nhdr", "gzip", "raw.gz")):
     raw = path("packed.bin")
     values("<u2").tofile(raw)
     make = [unu, "make", "-i", raw, "-t", "ushort", "-s", *map(str, SIZE), "-e", "raw", "-en", "little"]
@@ -256,7 +257,8 @@ for name, text, more in (
     ),
     (
         "placed.mhd",
-        "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nCenterOfRotation = 1 2 3\nAnatomicalOrientation = RAS\nPosition = 1 2 3\n"
+        "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nCenterOfRotation = 1 2 3\nAnatomicalOrientation = RAS\n"
+        "Position = 1 2 3\n"
         "ElementSize = 2 3 4\nElementDataFile = headers.bin\n",
         {
             "origin": [1.0, 2.0, 3.0],
@@ -270,7 +272,8 @@ for name, text, more in (
     note(name, [(None, "float32")], **more)
 
 with open(path("backwards.mhd"), "w", encoding="utf-8") as file:
-    file.write("NDims = 3\nDimSize = 21 13 10\nElementType = MET_FLOAT\nElementSpacing = 1 -2 3\nElementDataFile = headers.bin\n")
+    file.write("NDims = 3\nDimSize = 21 13 10\nElementType = MET_FLOAT\nElementSpacing = 1 -2 3\n"
+               "ElementDataFile = headers.bin\n")
 note("backwards.mhd", [(None, "float32")], spacing=[1.0, 2.0, 3.0])
 
 # Of what a header says of its own size, MetaIO makes a place in the file, also where the values follow it.

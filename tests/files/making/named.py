@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""HDF5 and netCDF-4 with axes by name in many orders, depths, and values that are not one number each. Importing it makes
-the files."""
+"""HDF5 and netCDF-4 with axes by name in many orders, depths, and values that are not one number each. Importing it
+makes the files."""
 
 import h5py
 import netCDF4
@@ -34,16 +34,19 @@ def write_netcdf(name, coordinates, data, arrays, more=None, **kept):
 
 ONE = [("v", "float32")]
 write_labels("zyxt.h5", ("z", "y", "x", "time"), np.stack(STEPS, -1), ONE, {"steps": 12})
-write_labels("xyzt.h5", ("x", "y", "z", "time"), np.stack(STEPS[:3], -1).transpose(2, 1, 0, 3), ONE, {"steps": 3}, chunks=(8, 5, 4, 2))
+write_labels("xyzt.h5", ("x", "y", "z", "time"), np.stack(STEPS[:3], -1).transpose(2, 1, 0, 3), ONE, {"steps": 3},
+             chunks=(8, 5, 4, 2))
 write_labels("czyx.h5", ("c", "z", "y", "x"), CHANNELS, OF_CHANNELS)
 write_labels("czyx_chunks.h5", ("c", "z", "y", "x"), CHANNELS, OF_CHANNELS, chunks=(2, 4, 5, 8), compression="gzip")
 # ImageJ's order, also with times, and a voxel size.
 write_labels("zcyx.h5", ("z", "channel", "y", "x"), CHANNELS.transpose(1, 0, 2, 3), OF_CHANNELS)
 both = np.stack([np.stack([values("<f4", channel=channel, step=step) for channel in range(3)], 1) for step in range(2)])
-write_labels("tzcyx.h5", ("t", "z", "c", "y", "x"), both, OF_CHANNELS, {"steps": 2, "spacing": [1.0, 2.0, 3.0]}, chunks=(1, 4, 3, 5, 8))
+write_labels("tzcyx.h5", ("t", "z", "c", "y", "x"), both, OF_CHANNELS, {"steps": 2, "spacing": [1.0, 2.0, 3.0]},
+             chunks=(1, 4, 3, 5, 8))
 with h5py.File(path("tzcyx.h5"), "a") as file:
     file["v"].attrs["element_size_um"] = [3.0, 2.0, 1.0]
-write_labels("short.h5", ("time", "z", "y", "x"), np.stack(STEPS[:2])[..., :8], ONE, {"steps": 2, "size": (8, *SIZE[1:])})
+write_labels("short.h5", ("time", "z", "y", "x"), np.stack(STEPS[:2])[..., :8], ONE,
+             {"steps": 2, "size": (8, *SIZE[1:])})
 write_labels("frames.h5", ("frame", "z", "y", "x"), np.stack(STEPS[:2]), ONE, {"steps": 2})
 
 # What weather and ocean have: ensembles, times in front or not, depths that count downward.
@@ -58,13 +61,14 @@ write_netcdf("ocean.nc", (LEVELS, LATITUDES, LONGITUDES), values("<f4"), ONE, PL
 write_netcdf("levels_first.nc", (LEVELS, TIMES, LATITUDES, LONGITUDES), np.stack(STEPS[:3], 1), ONE, IN_TIME)
 members = np.stack([np.stack([values("<f4", channel=member, step=step) for step in range(3)]) for member in range(3)])
 write_netcdf(
-    "members.nc", (MEMBERS, TIMES, LEVELS, LATITUDES, LONGITUDES), members, OF_CHANNELS, IN_TIME, chunksizes=(2, 2, 4, 5, 8), zlib=True
+    "members.nc", (MEMBERS, TIMES, LEVELS, LATITUDES, LONGITUDES), members, OF_CHANNELS, IN_TIME,
+    chunksizes=(2, 2, 4, 5, 8), zlib=True
 )
 FLAT = {"steps": 3, "times": TIMES[1], "size": (*SIZE[:2], 1), "origin": [10.0, 60.0, 0.0], "spacing": [1.0, -1.0, 1.0]}
 write_netcdf("flat.nc", (TIMES, LATITUDES, LONGITUDES), np.stack(STEPS[:3])[:, 0], ONE, FLAT)
 
-# Values of several numbers, of which each becomes an array, and a vector where they are x, y and z: with the distance of
-# 46 channels the sample is greater by one. Others are left out with a word, as is what a missing filter packed.
+# Values of several numbers, of which each becomes an array, and a vector where they are x, y and z: with the distance
+# of 46 channels the sample is greater by one. Others are left out with a word, as is what a missing filter packed.
 with h5py.File(path("kinds.h5"), "w") as file:
     parts = [values("<f4", channel=46 * part) for part in range(3)]
     vector = np.zeros(SIZE[::-1], [("x", "<f4"), ("name", "S3"), ("y", "<f4"), ("z", "<f4")])
@@ -89,7 +93,8 @@ note("kinds.h5", [("wave/r", "float64"), ("wave/i", "float64", 1, 1)], dataset="
 # Two missing values and more, of packed numbers.
 with h5py.File(path("many_missing.h5"), "w") as file:
     dataset = file.create_dataset("f", data=values("<i2"))
-    dataset.attrs["_FillValue"], dataset.attrs["missing_value"] = np.array([7], "i2"), np.array([7, 9, 11, 12, 13], "i2")
+    dataset.attrs["_FillValue"] = np.array([7], "i2")
+    dataset.attrs["missing_value"] = np.array([7, 9, 11, 12, 13], "i2")
     dataset.attrs["scale_factor"] = 0.25
 note(
     "many_missing.h5", [("f", "float32")], packing={"scale": 0.25, "offset": 0.0, "missing": [7, 9, 11, 12]},
@@ -103,7 +108,8 @@ with h5py.File(path("open_times.h5"), "w") as file:
         file[f"data/{step}/fields/rho"] = STEPS[step]
         file[f"data/{step}/fields/deep"] = STEPS[step] if step < 2 else STEPS[step][np.newaxis]
     file["probe"] = np.stack(STEPS[:2])
-note("open_times.h5", [("rho", "float32")], steps=3, warnings=["'deep'", "'probe' with 2 time steps beside 3 iterations"])
+note("open_times.h5", [("rho", "float32")], steps=3,
+     warnings=["'deep'", "'probe' with 2 time steps beside 3 iterations"])
 
 # Axes that cannot be told apart.
 with h5py.File(path("five.h5"), "w") as file:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that say where their samples lie, in which order, and how numbers become values: netCDF-4 by netCDF4, openPMD, EMD
-and voxel sizes by h5py, xarray's and OME's metadata in Zarr. Importing it makes the files."""
+"""Files that say where their samples lie, in which order, and how numbers become values: netCDF-4 by netCDF4,
+openPMD, EMD and voxel sizes by h5py, xarray's and OME's metadata in Zarr. Importing it makes the files."""
 
 import json
 
@@ -13,7 +13,8 @@ from making.volumes import SIZE, note, path, values
 from making.zarrs import LATER, save_zarr
 
 PACKED = {"scale": 0.25, "offset": 5.0, "missing": [7.0]}
-EVEN = {"lon": np.linspace(10, 30, SIZE[0]), "lat": 60 - 0.5 * np.arange(SIZE[1]), "lev": 100.0 + 50 * np.arange(SIZE[2])}
+EVEN = {"lon": np.linspace(10, 30, SIZE[0]), "lat": 60 - 0.5 * np.arange(SIZE[1]),
+        "lev": 100.0 + 50 * np.arange(SIZE[2])}
 PLACE = {"origin": [10.0, 60.0, 100.0], "spacing": [1.0, -0.5, 50.0]}
 UNEVEN = 10.0 * np.arange(SIZE[2]) ** 1.5
 
@@ -28,7 +29,8 @@ with netCDF4.Dataset(path("packed.nc"), "w") as file:
     shorts = file.createVariable("t", "i2", ("time", "lev", "lat", "lon"), zlib=True, fill_value=7)
     shorts.set_auto_maskandscale(False)
     shorts.scale_factor, shorts.add_offset = 0.25, 5.0
-    whole = file.createVariable("u", "i1", ("time", "lev", "lat", "lon"), fill_value=np.int8(7), chunksizes=(2, 4, 5, 8))
+    whole = file.createVariable("u", "i1", ("time", "lev", "lat", "lon"), fill_value=np.int8(7),
+                                chunksizes=(2, 4, 5, 8))
     whole.set_auto_maskandscale(False)
     whole.setncattr("_Unsigned", "true")
     whole.scale_factor, whole.add_offset = 0.25, 5.0
@@ -69,7 +71,8 @@ for name, labels, order, data in (
 ):
     with h5py.File(path(name), "w") as file:
         file.attrs["openPMD"], file.attrs["basePath"], file.attrs["meshesPath"] = "1.1.0", "/data/%T/", "fields/"
-        rho = file.create_dataset("data/7/fields/rho", data=data, chunks=tuple(np.maximum(1, np.array(data.shape) // 3)))
+        rho = file.create_dataset("data/7/fields/rho", data=data,
+                                  chunks=tuple(np.maximum(1, np.array(data.shape) // 3)))
         rho.attrs["axisLabels"] = np.array([letter.encode() for letter in labels])
         rho.attrs["geometry"], rho.attrs["dataOrder"] = np.bytes_("cartesian"), np.bytes_(order)
         turn = 1 if labels == "xyz" else -1
@@ -81,7 +84,8 @@ for name, labels, order, data in (
 # lies elsewhere and moves, one is in one only, one has numbers of several types.
 with h5py.File(path("open_steps.h5"), "w") as file:
     file.attrs["openPMD"], file.attrs["basePath"], file.attrs["meshesPath"] = "1.1.0", "/data/%T/", "fields/"
-    for step, (iteration, kept) in enumerate(((7, {"chunks": (4, 5, 8), "compression": "gzip"}), (20, {}), (100, {"chunks": (2, 7, 9)}))):
+    for step, (iteration, kept) in enumerate(((7, {"chunks": (4, 5, 8), "compression": "gzip"}), (20, {}),
+                                              (100, {"chunks": (2, 7, 9)}))):
         group = file.create_group(f"data/{iteration}")
         group.attrs["time"], group.attrs["timeUnitSI"] = 3.0 * step, 0.5
         for name, place in (("E/x", 0.5), ("mixed", 0.5), ("rho", 0.0)) + ((("once", 0.0),) if step == 1 else ()):
@@ -112,7 +116,8 @@ with h5py.File(path("image.ims"), "w") as file:
         for name, text in told.items():
             group.attrs[name] = np.frombuffer(str(text).encode(), "S1")
 
-    tell(file.create_group("DataSetInfo/Image"), X=21, Y=13, Z=10, Unit="um", ExtMin0=10, ExtMin1=20, ExtMin2=30, ExtMax0=31, ExtMax1=46, ExtMax2=70)
+    tell(file.create_group("DataSetInfo/Image"), X=21, Y=13, Z=10, Unit="um", ExtMin0=10, ExtMin1=20, ExtMin2=30,
+         ExtMax0=31, ExtMax1=46, ExtMax2=70)
     for step in range(2):
         for channel, how in enumerate(({"compression": "gzip"}, {})):
             padded = np.full((12, 15, 24), 999, "<u2")
@@ -151,7 +156,8 @@ zarr.open_group(path("cf.zarr"), mode="w", **LATER)
 save_zarr("cf.zarr/t", values("<i2"), chunks=(4, 5, 8))
 for name, numbers in EVEN.items():
     save_zarr("cf.zarr/" + name, numbers, chunks=(7,))
-attributes = {"": {"_ARRAY_DIMENSIONS": ["lev", "lat", "lon"], "scale_factor": 0.25, "add_offset": 5.0, "_FillValue": 7}}
+attributes = {"": {"_ARRAY_DIMENSIONS": ["lev", "lat", "lon"], "scale_factor": 0.25, "add_offset": 5.0,
+                   "_FillValue": 7}}
 attributes.update({name: {"_ARRAY_DIMENSIONS": [name], "units": "degrees"} for name in EVEN})
 attributes["lev"].update({"units": "m", "positive": "Down"})
 for name, told in attributes.items():
@@ -199,7 +205,8 @@ def write_ome6(name, transformation, data, systems, coarser=None, **more):
             {
                 "coordinateSystems": [{"name": "other", "axes": []}, {"name": "intrinsic", "axes": systems}],
                 "datasets": [
-                    {"path": level, "coordinateTransformations": [{**how, "input": {"path": level}, "output": {"name": "intrinsic"}}]}
+                    {"path": level, "coordinateTransformations": [{**how, "input": {"path": level},
+                                                                   "output": {"name": "intrinsic"}}]}
                     for how, level in datasets
                 ],
             }
@@ -221,14 +228,16 @@ write_ome6(
     spacing=[0.5, 2.0, 4.0], origin=[30.0, 20.0, 10.0],
 )
 write_ome6(
-    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0], warnings=["shown in 'micrometer'"],
+    "six_units.zarr", scale([0.001, 2000, 1]), values("<f4"), MIXED, spacing=[1.0, 2.0, 1.0],
+    warnings=["shown in 'micrometer'"],
 )
 write_ome6(
     "six_time.zarr", scale([0.5, 4, 2, 1]), np.stack([values("<f4", step=step) for step in range(3)]), IN_TIME,
     steps=3, times=[0.0, 0.5, 1.0], spacing=[1.0, 2.0, 4.0],
 )
 write_ome6(
-    "six_mapped.zarr", {"type": "sequence", "transformations": [{"type": "mapAxis", "mapAxis": [2, 1, 0]}, scale([4, 2, 1])]},
+    "six_mapped.zarr",
+    {"type": "sequence", "transformations": [{"type": "mapAxis", "mapAxis": [2, 1, 0]}, scale([4, 2, 1])]},
     values("<f4").transpose(2, 1, 0), SPACE, spacing=[1.0, 2.0, 4.0],
 )
 write_ome6(
@@ -236,13 +245,14 @@ write_ome6(
     spacing=[1.0, 2.0, 4.0], origin=[3.0, 2.0, 1.0],
 )
 write_ome6(
-    "six_turned.zarr", {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}, values("<f4"), SPACE,
-    direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
+    "six_turned.zarr", {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}, values("<f4"),
+    SPACE, direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
 )
 
 TURNED = {"type": "rotation", "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]]}
 write_ome6(
-    "six_turned_levels.zarr", TURNED, values("<f4"), SPACE, {"type": "sequence", "transformations": [scale([2, 2, 2]), TURNED]},
+    "six_turned_levels.zarr", TURNED, values("<f4"), SPACE,
+    {"type": "sequence", "transformations": [scale([2, 2, 2]), TURNED]},
     spacing=[2.0] * 3, origin=[-0.1, 0.7, 0.5], direction=[0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0],
 )
 

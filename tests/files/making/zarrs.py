@@ -8,7 +8,8 @@ import struct
 
 import numpy as np
 import zarr
-from numcodecs import BZ2, LZ4, LZMA, AsType, BitRound, Blosc, Delta, FixedScaleOffset, GZip, Quantize, Shuffle, Zlib, Zstd
+from numcodecs import (BZ2, LZ4, LZMA, AsType, BitRound, Blosc, Delta, FixedScaleOffset, GZip, Quantize, Shuffle, Zlib,
+                       Zstd)
 
 from making.hdf import LARGE
 from making.volumes import SIZE, note, path, values
@@ -21,7 +22,8 @@ def save_zarr(name, data, separator=".", compressor="default", **options):
     if LATER:
         encoding = {"name": "v2", "separator": separator}
         compressor = "auto" if compressor == "default" else compressor
-        zarr.create_array(path(name), data=data, compressors=compressor, chunk_key_encoding=encoding, **LATER, **options)
+        zarr.create_array(path(name), data=data, compressors=compressor, chunk_key_encoding=encoding, **LATER,
+                          **options)
         return
     store = zarr.DirectoryStore(path(name), dimension_separator=separator)
     zarr.save_array(store, data, compressor=compressor, dimension_separator=separator, **options)
@@ -89,7 +91,8 @@ for name, order, turned in (("fortran", "F", False), ("from_x", "C", True), ("bo
         json.dump(names, file)
     note(f"{name}.zarr", [(name, "float32")])
 # Names in capitals, and such as only say where x, y or z is.
-for name, names in (("capitals", "XYZ"), ("capitals_z", "ZYX"), ("x_first", ["x", "lat", "lon"]), ("unknown", ["time_of_day", "lat", "dim_2"])):
+for name, names in (("capitals", "XYZ"), ("capitals_z", "ZYX"), ("x_first", ["x", "lat", "lon"]),
+                    ("unknown", ["time_of_day", "lat", "dim_2"])):
     turned = names[0] in "Xx"
     data = values("<f4")
     save_zarr(f"{name}.zarr", data.T if turned else data, chunks=(8, 5, 4))
@@ -97,7 +100,8 @@ for name, names in (("capitals", "XYZ"), ("capitals_z", "ZYX"), ("x_first", ["x"
         json.dump({"_ARRAY_DIMENSIONS": list(names)}, file)
     note(f"{name}.zarr", [(name, "float32")])
 # The components of a sample on a last axis, which its name tells; the second one has x, y, z before it.
-for name, names in (("components", ["z", "y", "x", "channel"]), ("components_x", "XYZC"), ("components_steps", ["time", "z", "y", "x", "c"])):
+for name, names in (("components", ["z", "y", "x", "channel"]), ("components_x", "XYZC"),
+                    ("components_steps", ["time", "z", "y", "x", "c"])):
     data, chunk = values("<i2", 3), (4, 5, 8, 3)
     if names == "XYZC":
         data, chunk = data.transpose(2, 1, 0, 3), (8, 5, 4, 3)
@@ -108,7 +112,8 @@ for name, names in (("components", ["z", "y", "x", "channel"]), ("components_x",
         json.dump({"_ARRAY_DIMENSIONS": list(names)}, file)
     note(f"{name}.zarr", [(name, "int16", 3)], steps=3 if len(names) == 5 else 1)
 hole = zarr.open_array(
-    path("components_holes.zarr"), mode="w", shape=(*SIZE[::-1], 2), chunks=(4, 5, 8, 2), dtype=">f4", fill_value=42.0, **LATER
+    path("components_holes.zarr"), mode="w", shape=(*SIZE[::-1], 2), chunks=(4, 5, 8, 2), dtype=">f4",
+    fill_value=42.0, **LATER
 )
 hole[0:4, 0:5, 0:8] = values("<f4", 2)[0:4, 0:5, 0:8]
 hole.attrs["_ARRAY_DIMENSIONS"] = ["z", "y", "x", "c"]
@@ -137,7 +142,8 @@ with open(path("nested.zarr/.zarray"), "w", encoding="utf-8") as file:
 note("nested.zarr", [("nested", "float32")])
 # Labels that are alike, transformations of the level and of all, two axes that are neither time nor space.
 group = zarr.open_group(path("labels.zarr"), mode="w", **LATER)
-save_zarr("labels.zarr/0", np.stack([np.stack([values("<u2", channel=3 * p + k) for k in range(3)]) for p in range(2)]), chunks=(1, 2, 4, 5, 8))
+save_zarr("labels.zarr/0", np.stack([np.stack([values("<u2", channel=3 * p + k) for k in range(3)])
+                                     for p in range(2)]), chunks=(1, 2, 4, 5, 8))
 axes = [{"name": "phase", "type": "other"}, {"name": "c", "type": "channel"}]
 axes += [{"name": name, "type": "space"} for name in "zyx"]
 
@@ -245,7 +251,8 @@ note("container.zarr", [(None, "uint8")], **PLACED)
 write_groups("plate.zarr", {"plate": {"wells": [{"path": "A/1"}]}}, ["A", "A/1"])
 write_image("plate.zarr/A/1/0")
 write_image("plate.zarr/A/1/1", channel=5)
-note("plate.zarr", [(None, "uint8")], warnings=["'A/1/0' is shown. Enter another one as Dataset: 'A/1/0', 'A/1/1'"], **PLACED)
+note("plate.zarr", [(None, "uint8")], warnings=["'A/1/0' is shown. Enter another one as Dataset: 'A/1/0', 'A/1/1'"],
+     **PLACED)
 note("plate.zarr", [("A/1/1", "uint8", 1, 5)], dataset="A/1/1", **PLACED)
 write_groups("deeper.zarr", {}, ["run", "run/fields"])
 save_zarr("deeper.zarr/run/fields/a", values("|u1"), chunks=(4, 5, 8))
@@ -366,6 +373,7 @@ scaled = [FixedScaleOffset(offset=-3, scale=10, dtype="<f4", astype="<i2"), Delt
 write_version3("three_fixedscaleoffset.zarr", [GZip()], [4, 5, 8], numbers=scaled, endian="big")
 # Axes that are transposed, and again: to the order of C, or of Fortran.
 turn, around = [2, 1, 0], [1, 2, 0]
-for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [turn, [0, 1, 2]]), ("around", [around] * 3)):
+for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [turn, [0, 1, 2]]),
+                     ("around", [around] * 3)):
     write_version3(f"three_{name}.zarr", [], [4, 5, 8], None, orders)
     write_version3(f"three_{name}_sharded.zarr", ["zstd"], [2, 5, 4], [4, 10, 8], orders)

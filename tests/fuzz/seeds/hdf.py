@@ -67,7 +67,8 @@ def make_plain(folder):
         layout[3:] = h5py.VirtualSource("input.h5", "a", (3, *SHAPE[1:]))
         file.create_virtual_dataset("f", layout, fillvalue=2.0)
     with h5py.File(path(folder, "Hdf", "external.h5"), "w") as file:
-        file.create_dataset("f", SHAPE, "<f4", external=[("values.bin", 8, 200), ("values.bin", 300, h5py.h5f.UNLIMITED)])
+        file.create_dataset("f", SHAPE, "<f4",
+                            external=[("values.bin", 8, 200), ("values.bin", 300, h5py.h5f.UNLIMITED)])
     # Space that is set aside at once: the chunks follow one another, without an index.
     for name, kind in (("implicit", LATEST), ("early", EARLIEST)):
         with h5py.File(path(folder, "Hdf", name + ".h5"), "w", **kind) as file:

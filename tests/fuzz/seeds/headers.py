@@ -36,7 +36,8 @@ META = {
     "full": "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
     "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 1 2 3\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = RAI\n"
     "ElementSpacing = 0.5 -0.25 2\nDimSize = 5 4 6\nElementNumberOfChannels = 3\nElementType = MET_UCHAR_ARRAY\n",
-    "big": "NDims = 3\nElementByteOrderMSB = T\nDimSize = 5 4 6\nElementType = MET_LONG\nHeaderSize = 300\nPosition = 1 2 3\n",
+    "big": "NDims = 3\nElementByteOrderMSB = T\nDimSize = 5 4 6\nElementType = MET_LONG\nHeaderSize = 300\n"
+           "Position = 1 2 3\n",
     "end": "NDims = 3\nDimSize = 5 4 6\nElementType = MET_DOUBLE\nHeaderSize = -1\nRotation = 0 1 0 -1 0 0 0 0 1\n"
     "ElementSize = 1 1 1\n",
     "colons": "NDims : 3\nDimSize : 5 4 6\nElementType : MET_FLOAT\n",
@@ -51,9 +52,11 @@ def make(folder):
     for name, (pack, text) in PACKED.items():
         write(folder, "Nrrd", name, f"NRRD0005\n{text}\n".encode() + pack(raw))
     packed = zlib.compress(raw)
-    text = f"NDims = 3\nDimSize = 5 4 6\nElementType = MET_DOUBLE\nCompressedData = T\nCompressedDataSize = {len(packed)}\n"
+    text = ("NDims = 3\nDimSize = 5 4 6\nElementType = MET_DOUBLE\nCompressedData = T\n"
+            f"CompressedDataSize = {len(packed)}\n")
     write(folder, "MetaImage", "packed", f"{text}ElementDataFile = LOCAL\n".encode() + packed)
     for name, text in META.items():
         for place, content in (("LOCAL", raw), ("values.bin", b""), ("LIST", b"a.bin\n"), ("slice%03d.bin 1 6 1", b"")):
             between = " : " if name == "colons" else " = "
-            write(folder, "MetaImage", f"{name}-{place[:4]}", f"{text}ElementDataFile{between}{place}\n".encode() + content)
+            write(folder, "MetaImage", f"{name}-{place[:4]}",
+                  f"{text}ElementDataFile{between}{place}\n".encode() + content)

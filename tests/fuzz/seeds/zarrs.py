@@ -84,7 +84,8 @@ def make_chunks(folder):
 
 def join(files):
     """The format of FuzzZarrMetadata.cxx."""
-    return "\n".join(f"==> {name}\n{text if isinstance(text, str) else json.dumps(text)}" for name, text in files.items())
+    return "\n".join(f"==> {name}\n{text if isinstance(text, str) else json.dumps(text)}"
+                     for name, text in files.items())
 
 
 def make_metadata(folder):
@@ -96,9 +97,11 @@ def make_metadata(folder):
     plain = arrays[0]["metadata"]
     sized = lambda *shape: {**plain, "shape": shape, "chunks": [min(3, n) for n in shape]}
     write(folder, "ZarrMetadata", "names", join({
-        ".zarray": {**sized(2, 6, 4, 5), "fill_value": "NaN"}, ".zattrs": {"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]}}))
+        ".zarray": {**sized(2, 6, 4, 5), "fill_value": "NaN"},
+        ".zattrs": {"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]}}))
     write(folder, "ZarrMetadata", "channels", join({
-        ".zarray": {**sized(6, 4, 5, 2), "chunks": [3, 4, 5, 2]}, ".zattrs": {"_ARRAY_DIMENSIONS": ["z", "y", "x", "c"]}}))
+        ".zarray": {**sized(6, 4, 5, 2), "chunks": [3, 4, 5, 2]},
+        ".zattrs": {"_ARRAY_DIMENSIONS": ["z", "y", "x", "c"]}}))
     write(folder, "ZarrMetadata", "group", join({
         ".zgroup": {"zarr_format": 2}, ".zattrs": '{"missing": NaN, "least": -Infinity}',
         "0/.zarray": sized(6, 4, 5), "1/.zarray": sized(3, 2, 3), "a/.zarray": sized(6, 4, 5), "0/0.0.0": "abc"}))
@@ -111,7 +114,8 @@ def make_metadata(folder):
                               "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 2, 2, 2]}]}],
              "omero": {"channels": [{"label": "red"}, {"label": "red"}]}}
     write(folder, "ZarrMetadata", "ome2", join({
-        ".zgroup": {"zarr_format": 2}, ".zattrs": image, "0/.zarray": sized(3, 2, 6, 4, 5), "1/.zarray": sized(3, 2, 3, 2, 3)}))
+        ".zgroup": {"zarr_format": 2}, ".zattrs": image, "0/.zarray": sized(3, 2, 6, 4, 5),
+        "1/.zarray": sized(3, 2, 3, 2, 3)}))
     third = next(one["metadata"] for one in arrays if one["metadata"]["zarr_format"] == 3)
     grid = lambda *shape: {**third, "shape": shape, "chunk_grid": {
         "name": "regular", "configuration": {"chunk_shape": [min(3, n) for n in shape]}}}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Loaded into the ranks of a server before all else (LD_PRELOAD): notes, a few times a second, how many KiB of the heap
-/// are in use, in a file that is named after the process, in the folder DSM_HEAP_NOTES. What a process holds of the
-/// system is more, by what lies free between pieces in use, and differs from run to run; this does not.
+/// Loaded into the ranks of a server before all else (LD_PRELOAD): notes, a few times a second, how many KiB of the
+/// heap are in use, in a file that is named after the process, in the folder DSM_HEAP_NOTES. What a process holds
+/// of the system is more, by what lies free between pieces in use, and differs from run to run; this does not.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

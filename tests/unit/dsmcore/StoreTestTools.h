@@ -174,10 +174,10 @@ inline dsm::BlockDirectory MakePairedDirectory(int ranks, std::size_t count, std
   return directory;
 }
 
-/// A frame as a renderer drives it: `trace` runs on a thread for each of the store's workers, this
-/// thread serves until every rank's workers are done. What this thread comes upon cancels the frame on
-/// all ranks, what a worker throws ends that worker; then every rank throws the same Error. `first` (may be empty) runs on this thread when the
-/// frame has begun.
+/// A frame as a renderer drives it: `trace` runs on a thread for each of the store's workers, this thread serves
+/// until every rank's workers are done. What this thread comes upon cancels the frame on all ranks, what a worker
+/// throws ends that worker; then every rank throws the same Error. `first` (may be empty) runs on this thread when
+/// the frame has begun.
 template <class Store>
 void RunFrame(dsm::Messenger& messenger, Store& store,
   const std::function<void(typename Store::Worker&, int)>& trace,

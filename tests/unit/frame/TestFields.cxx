@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that is shown of a field, for each kind of field, against closed formulas. Lattices and levels hold samples of the
-// function; a function without bricks has nothing but a walk and a sampler.
+// All that is shown of a field, for each kind of field, against closed formulas. Lattices and levels hold samples
+// of the function; a function without bricks has nothing but a walk and a sampler.
 #include "tests/support/LoopbackCluster.h"
 #include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
@@ -115,8 +115,9 @@ protected:
   using Publish = std::function<Values(const Quadratic&)>;
   using Build = std::function<void(const Publish&, rt::Scene&)>;
 
-  /// Compares a scene's picture on several ranks, in all organizations of memory, with `expect(ray)` for each pixel but those
-  /// in which it changes much. The largest difference, in 255ths: `sampled` where the field holds samples, else `exact`.
+  /// Compares a scene's picture on several ranks, in all organizations of memory, with `expect(ray)` for each pixel
+  /// but those in which it changes much. The largest difference, in 255ths: `sampled` where the field holds
+  /// samples, else `exact`.
   void Check(const Build& build, const std::function<Expected(const rt::Ray&)>& expect,
     double sampled, double exact = 1.0)
   {

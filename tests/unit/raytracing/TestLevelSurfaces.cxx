@@ -27,7 +27,8 @@ double GetNoise(const glm::dvec3& place)
   return wave - std::floor(wave) - 0.5;
 }
 
-/// Noise within one value that is above it everywhere at the border: from a place that is below, each ray meets the surface.
+/// Noise within one value that is above it everywhere at the border: from a place that is below, each ray meets the
+/// surface.
 LevelModel CreateClosed(unsigned seed, double offset)
 {
   LevelModel model = CreateRandomLevels(seed, false);

@@ -224,7 +224,7 @@ void WideBvhBuilder<Reference>::SetBounds(
   Node& node, const BoundingBox& box, const Range* children, int count) const
 {
   constexpr double largest = 255.0;
-  // Of single precision; smaller exponents are not normal numbers.
+  // Numbers of single precision; smaller exponents are not normal numbers.
   constexpr int bias = 127;
   constexpr int smallestExponent = -126;
   float lower[4];
@@ -259,7 +259,7 @@ void WideBvhBuilder<Reference>::SetBounds(
     {
       const auto place = [&](float plane)
       { return (static_cast<double>(plane) - node.Origin[axis]) * scales[axis]; };
-      // A child that is not there: no ray passes its planes in this order.
+      // A missing child: no ray passes its planes in this order.
       node.Bounds[axis * Node::Width + child] = child < count
         ? static_cast<std::uint8_t>(std::clamp(std::floor(place(childLower[axis])), 0.0, largest))
         : 255;

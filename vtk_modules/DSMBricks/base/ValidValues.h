@@ -82,7 +82,7 @@ public:
       if constexpr (std::is_floating_point_v<T>)
       {
         const bool isGiant = std::abs(fill) >= ValidValues::LeastGiant;
-        // As the array has it. What T cannot hold stays beyond all values.
+        // The number as the array has it. A number that T cannot hold stays beyond all values.
         if (std::abs(fill) <= static_cast<double>(std::numeric_limits<T>::max()))
         {
           fill = static_cast<double>(static_cast<T>(fill));

@@ -43,9 +43,9 @@ struct SeenBricks
   }
 };
 
-/// Reads bricks, and finds out what there is to know of them. Of bricks that hold nothing but the fill value
-/// it reads one of each size. Its threads are numbered from 0; each keeps its own brick and
-/// survey, so that none waits.
+/// Reads bricks and collects the data of the top level about them. If bricks hold nothing but the fill value, it
+/// reads only one of each size. Its threads are numbered from 0; each keeps its own brick and survey, so that none
+/// waits.
 class BrickLooker
 {
 public:
@@ -56,8 +56,8 @@ public:
   BrickLooker(const BrickLattice& lattice, const dsm::BlockReader& reader, int threads,
     FillerTest isFiller = {});
 
-  /// The block of a brick, which stays until the thread's next one; null where the thread has read a block with the same
-  /// bytes before. Throws what the reader does.
+  /// The block of a brick, which stays until the thread's next one; null where the thread has read a block with the
+  /// same bytes before. Throws what the reader does.
   const std::byte* Read(dsm::BlockId id, int thread);
   /// Returns the data of the brick that the thread has read. Each brick counts once in the survey.
   SeenBrick See(dsm::BlockId id, int thread);
@@ -65,7 +65,7 @@ public:
   IsovalueSurvey GetSurvey() const;
 
 private:
-  /// What bricks of one size are that hold nothing but the fill value.
+  /// The data of all bricks of one size that hold nothing but the fill value.
   struct Filler
   {
     Index3 Cells;

@@ -55,7 +55,7 @@ public:
         continue;
       }
       const std::vector<Box> layer = CellAverages::GetLayer(cells);
-      std::optional<std::vector<Box>> whole; // cells that are surely somebody's
+      std::optional<std::vector<Box>> whole; // cells that some rank owns
       for (const auto& [from, unused] : own)
       {
         for (const Box& box : layer)

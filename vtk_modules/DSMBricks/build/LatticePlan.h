@@ -34,11 +34,11 @@ struct PieceInfo
   std::int32_t HasMask;
 };
 
-/// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that
-/// touch form one lattice, unless they are of blocks that are to stay apart. Rectilinear pieces are on the same points where
-/// all their coordinates are equal in the ranges that they share. Points may differ by a small part
-/// of a cell; the ones of the lowest block count. The result depends on the blocks' numbers, and on
-/// the order of the pieces of one block.
+/// Finds which pieces, of all ranks, continue one another: pieces on the same sampling points that touch form one
+/// lattice, unless they are of blocks that are to stay apart. Rectilinear pieces are on the same points where all
+/// their coordinates are equal in the ranges that they share. Points may differ by a small part of a cell; the ones
+/// of the lowest block count. The result depends on the blocks' numbers, and on the order of the pieces of one
+/// block.
 class LatticePlan
 {
 public:
@@ -58,10 +58,10 @@ public:
   };
 
   LatticePlan() = default;
-  /// Throws dsm::Error when there are pieces, but none has a cell, and when one that has is at no place: its spacing is 0,
-  /// or a number of spacing, origin or direction is not finite, or its coordinates do not rise or fall everywhere.
-  /// `apart`: blocks that join no other. `coordinates`: of the points around the cells of each piece, which may be left out if
-  /// none is rectilinear.
+  /// Throws dsm::Error when there are pieces, but none has a cell, and when one that has is at no place: its
+  /// spacing is 0, or a number of spacing, origin or direction is not finite, or its coordinates do not rise or
+  /// fall everywhere. `apart`: blocks that join no other. `coordinates`: of the points around the cells of each
+  /// piece, which may be left out if none is rectilinear.
   explicit LatticePlan(const std::vector<PieceInfo>& pieces,
     const std::set<std::int32_t>& apart = {},
     const std::vector<GridPlanes::Coordinates>& coordinates = {});

@@ -91,9 +91,9 @@ private:
   std::unique_ptr<BlockSource> Bricks;   ///< this rank's
 };
 
-/// Collective, between frames: publishes the mesh in bricks. Every rank gives its own triangles;
-/// nothing is kept of the source. Throws the same dsm::Error on every rank. At its peak a rank holds, beside its piece, 32 bytes for each of its own triangles and
-/// about 85 for each that it will own, of a mesh with normals and a value.
+/// Collective, between frames: publishes the mesh in bricks. Every rank gives its own triangles; nothing is kept of
+/// the source. Throws the same dsm::Error on every rank. At its peak a rank holds, beside its piece, 32 bytes for
+/// each of its own triangles and about 85 for each that it will own, of a mesh with normals and a value.
 template <class Store>
 std::shared_ptr<TriangleMesh> PublishMesh(std::string_view what, const TriangleSource& source,
   const TriangleMeshSettings& settings, Store& store, dsm::Messenger& messenger,

@@ -22,7 +22,7 @@ public:
   const char* GetNames() const override { return "triangles"; }
   std::uint64_t GetCount() const override { return this->Source.GetTriangleCount(); }
   std::size_t GetRecordBytes() const override { return this->Layout.GetBytes(); }
-  /// That of the centroid.
+  /// The code is that of the triangle's centroid.
   bool FindCode(
     std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const override;
   /// A TriangleRecord.

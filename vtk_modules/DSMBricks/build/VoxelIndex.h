@@ -55,9 +55,9 @@ struct VoxelIndex
   static VoxelIndex Find(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, const Pass& pass, dsm::FunctionRef<void(double)> progress);
 
-  /// Collective: leaves fill values that nothing declares out of the survey (FillValues.h). Reads bricks only if the
-  /// survey and the ranges of the bricks leave it open whether there are any, and then at most 128 of them, evenly spread;
-  /// the survey is of these then. Errors as those of Find.
+  /// Collective: leaves fill values that nothing declares out of the survey (FillValues.h). Reads bricks only if
+  /// the survey and the ranges of the bricks leave it open whether there are any, and then at most 128 of them,
+  /// evenly spread; the survey is of these then. Errors as those of Find.
   void LeaveOutFills(dsm::Messenger& messenger, const BrickLattice& lattice,
     const dsm::BlockReader& reader, int threads);
 

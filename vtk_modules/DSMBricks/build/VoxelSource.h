@@ -25,8 +25,8 @@ public:
   /// fastest, in the lattice's scalar type, native byte order. `out` has room for all of them.
   virtual void ReadSamples(const Box& points, std::byte* out) const = 0;
 
-  /// Returns whether all samples at `points`, and their masks, are as in every such box of the source: one value, which is
-  /// known without reading.
+  /// Returns whether all samples at `points`, and their masks, are as in every such box of the source: one value,
+  /// which is known without reading.
   virtual bool IsFill(const Box& /*points*/) const { return false; }
 
   /// Returns whether any cells of the box hold no data (blanked cells).

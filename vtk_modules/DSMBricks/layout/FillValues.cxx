@@ -29,7 +29,7 @@ struct Kind
       constexpr double ratio = 1e-6;
       return std::max(std::abs(least), std::abs(greatest)) <= ratio * std::abs(this->Fill);
     }
-    constexpr double airBelow = -1024.0; // the least number of Hounsfield that scanners store
+    constexpr double airBelow = -1024.0; // the smallest number of Hounsfield that scanners store
     constexpr double ranges = 4.0;
     constexpr double rangesOfHounsfield = 0.125;
     const double gap = least - this->Fill;
@@ -57,8 +57,8 @@ std::vector<Kind> FindKinds(const IsovalueSurvey& survey)
   return kinds;
 }
 
-/// Bricks within the limits are made of macrocells within them, so what does not stand alone beside these bricks does not
-/// beside the macrocells.
+/// Bricks within the limits are made of macrocells within them, so what does not stand alone beside these bricks
+/// does not beside the macrocells.
 bool MayStandAlone(const Kind& kind, const std::vector<const std::vector<ValueRange>*>& bricks)
 {
   ValueRange within = ValueRange::GetEmpty();

@@ -22,9 +22,9 @@ using LimitedLook = dsm::FunctionRef<LimitedSurvey(const ValueLimits&)>;
 /// - a lowest value of at most -999 that fills at least one macrocell in 256, and that is farther from
 ///   the other values than four times their range (-9999, -32768); or that is below the Hounsfield scale,
 ///   which begins at -1024, as all other values are not (-2000 and -3024, the padding of CT scanners).
-/// A fill that touches every macrocell (a box of 5 x 5 x 5 samples) is not found. `bricks`: ranges of all bricks, of
-/// each lattice; they rule most data out, so that `look` is seldom called. `all` and `bricks` are the same on every rank.
-/// Returns `all` if no value is a fill.
+/// A fill that touches every macrocell (a box of 5 x 5 x 5 samples) is not found. `bricks`: ranges of all bricks,
+/// of each lattice; they rule most data out, so that `look` is seldom called. `all` and `bricks` are the same on
+/// every rank. Returns `all` if no value is a fill.
 IsovalueSurvey LeaveOutFills(const IsovalueSurvey& all,
   const std::vector<const std::vector<ValueRange>*>& bricks, LimitedLook look);
 

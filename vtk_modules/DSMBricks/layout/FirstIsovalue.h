@@ -21,7 +21,7 @@ struct SurveyedBricks
   const VoxelField* Field = nullptr;
 };
 
-/// What a first image of a volume shows.
+/// Isovalue and macrocells that a first image of a volume shows.
 struct FirstLook
 {
   /// Empty if no surface passes at any value.
@@ -30,10 +30,10 @@ struct FirstLook
   ValueLimits Values{ 1.0, 0.0 };
 };
 
-/// Collective. Suggests an isovalue for a first image, if the user has not chosen one: a value that divides
-/// the volume into two parts whose values differ most (Otsu, A Threshold Selection Method from Gray-Level
-/// Histograms, 1979). It prefers surfaces that the volume's border does not cut open. Fill values do not count. All
-/// criteria use the ranges of the macrocells, so no sample is read; every rank examines the bricks that it owns. The result
+/// Collective. Suggests an isovalue for a first image, if the user has not chosen one: a value that divides the
+/// volume into two parts whose values differ most (Otsu, A Threshold Selection Method from Gray-Level Histograms,
+/// 1979). It prefers surfaces that the volume's border does not cut open. Fill values do not count. All criteria
+/// use the ranges of the macrocells, so no sample is read; every rank examines the bricks that it owns. The result
 /// depends on the values only, not on the number of ranks.
 FirstLook FindFirstLook(const std::vector<SurveyedBricks>& all, dsm::Messenger& messenger);
 

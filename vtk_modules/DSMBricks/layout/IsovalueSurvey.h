@@ -51,7 +51,8 @@ struct IsovalueSurvey
   void CountUniform(const Box& cells, const Index3& end, double value);
   /// Both surveys must be valid.
   void Add(const IsovalueSurvey& other);
-  /// When all is counted: entries of Crossed and CutOpen are numbers from then on, no more what changes there.
+  /// To be called once, after all is counted: sums up the entries of Crossed and CutOpen, which were changes from
+  /// one interval to the next.
   void Accumulate();
 
   /// Intervals from the first to the last that has something in it.

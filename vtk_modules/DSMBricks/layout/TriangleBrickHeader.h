@@ -24,9 +24,9 @@ namespace bricks
 ///   edge flags             three bits a triangle, ten triangles in a 32-bit word, the first in its
 ///                          lowest bits, if it has edge flags (AllEdges)
 ///
-/// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block, so it can
-/// lie anywhere; an offset of 0 means that the part is not there. Vertices are shared between
-/// triangles within the brick and repeated in neighboring bricks, bit for bit.
+/// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block, so it can lie anywhere; an
+/// offset of 0 means that the part is missing. Vertices are shared between triangles within the brick and repeated
+/// in neighboring bricks, bit for bit.
 struct TriangleBrickHeader
 {
   std::uint32_t BlockBytes;

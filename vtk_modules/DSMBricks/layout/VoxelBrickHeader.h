@@ -36,8 +36,8 @@ struct VoxelBrickHeader
   float First;
   float Last;
   ScalarType Type;
-  /// For bricks of levels: where smaller or larger cells are next to cells that hold data. Bit 2 axis is the brick's lower
-  /// side, bit 2 axis + 1 the upper one; InnerBorder is within the brick.
+  /// For bricks of levels: where smaller or larger cells are next to cells that hold data. Bit 2 axis is the
+  /// brick's lower side, bit 2 axis + 1 the upper one; InnerBorder is within the brick.
   std::uint8_t Borders;
   std::uint8_t Unused[30];
 

@@ -12,8 +12,8 @@
 namespace bricks
 {
 
-/// The hierarchy of boxes and ranges over the bricks of all levels, whole on every rank. A leaf is one brick. Boxes are in
-/// cells of level 0.
+/// The hierarchy of boxes and ranges over the bricks of all levels, whole on every rank. A leaf is one brick. Boxes
+/// are in cells of level 0.
 class LevelHierarchy
 {
 public:

@@ -16,9 +16,9 @@
 namespace bricks
 {
 
-/// Lattices of cells of different size in the same space: level 0 has the largest cells, and a level's cells divide each
-/// cell of the one before into the same whole number of parts on an axis. Cell and point (0, 0, 0) of all levels are at the
-/// same place.
+/// Lattices of cells of different size in the same space: level 0 has the largest cells, and a level's cells divide
+/// each cell of the one before into the same whole number of parts on an axis. Cell and point (0, 0, 0) of all
+/// levels are at the same place.
 class LevelScales
 {
 public:
@@ -44,8 +44,8 @@ Index3 DivideDown(const Index3& number, const Index3& by);
 /// Rounds towards infinity.
 Index3 DivideUp(const Index3& number, const Index3& by);
 
-/// The leaves of some levels, cells that no finer ones cover, among the cells of one cube of LevelLattice::Edge. Plain, for
-/// messages between ranks.
+/// The leaves of some levels, cells that no finer ones cover, among the cells of one cube of LevelLattice::Edge.
+/// Plain, for messages between ranks.
 struct LevelCube
 {
   std::int32_t Level;
@@ -75,9 +75,9 @@ struct LevelBrick
   }
 };
 
-/// How the leaves of all levels are cut into bricks. A brick lies in one cube of cells of its level; its bounds are shrunk to
-/// the leaves in it, and a cube whose leaves are far apart becomes several. Depends on the leaves alone, not on what rank has
-/// which. Bricks are numbered level by level.
+/// How the leaves of all levels are cut into bricks. A brick lies in one cube of cells of its level; its bounds are
+/// shrunk to the leaves in it, and a cube whose leaves are far apart becomes several. Depends on the leaves alone,
+/// not on what rank has which. Bricks are numbered level by level.
 class LevelLattice
 {
 public:
@@ -112,8 +112,8 @@ public:
   /// The brick of a level that has a cell; None. The cell may be no leaf.
   dsm::BlockId Find(int level, const Index3& cell) const;
 
-  /// Calls `visit(id, brick)` for the bricks of `level` that have a point in common with the box of cells of `ofLevel`; points
-  /// on their boundaries count.
+  /// Calls `visit(id, brick)` for the bricks of `level` that have a point in common with the box of cells of
+  /// `ofLevel`; points on their boundaries count.
   template <class Visit>
   void ForEachTouching(int ofLevel, const Box& box, int level, const Visit& visit) const
   {

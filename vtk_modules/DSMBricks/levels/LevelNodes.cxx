@@ -283,7 +283,7 @@ void LevelNodes::FindHanging()
 {
   for (const Index3& point : this->Hanging)
   {
-    // Of leaves that are equally large, all have the same value: the first in the order of octants counts.
+    // Leaves that are equally large have the same value: the first in the order of octants counts.
     int coarsest = this->Brick.Level;
     Index3 leaf(0);
     for (int octant = 0; octant < 8; ++octant)

@@ -13,7 +13,7 @@
 namespace bricks
 {
 
-/// A leaf of another level than a brick's, as ranks tell one another. Plain.
+/// A leaf whose level differs from a brick's, for messages between ranks. Plain.
 struct ForeignLeaf
 {
   std::int32_t Level;
@@ -63,13 +63,14 @@ private:
 
 /// The values at the points of a brick's leaves, from those of the leaves around them.
 ///
-/// All leaves together carry one continuous function, which is trilinear in each of them: like the conforming spaces of
-/// finite elements with hanging nodes (Gupta, A finite element for transition from a fine to a coarse grid, 1978). A point
-/// that is a corner of all leaves that it touches has their mean: a leaf counts once for each of the eight octants around the
-/// point that it fills, and the less the larger it is, so that a linear function keeps its values across levels. Where values
-/// are of points, it has the one of the smallest leaf. A point that lies within a face or an edge of a larger leaf hangs: it
-/// has the value that the largest such leaf has there. So a leaf's value on a face is the same from both sides, whatever the
-/// levels, up to the rounding of hanging points to the type of the samples.
+/// All leaves together carry one continuous function, which is trilinear in each of them: like the conforming
+/// spaces of finite elements with hanging nodes (Gupta, A finite element for transition from a fine to a coarse
+/// grid, 1978). A point that is a corner of all leaves that it touches has their mean: a leaf counts once for each
+/// of the eight octants around the point that it fills, and the less the larger it is, so that a linear function
+/// keeps its values across levels. Where values are of points, it has the one of the smallest leaf. A point that
+/// lies within a face or an edge of a larger leaf hangs: it has the value that the largest such leaf has there. So
+/// a leaf's value on a face is the same from both sides, whatever the levels, up to the rounding of hanging points
+/// to the type of the samples.
 ///
 /// Where nothing is beyond a point, the mean of the values of cells is one half a cell inside. The
 /// function goes on to the border as it is from there to the next point inside, so that a linear
@@ -83,8 +84,8 @@ public:
   LevelNodes(const LevelLattice& lattice, dsm::BlockId id, bool ofPoints);
 
   ///@{
-  /// Leaves of the brick's own level, in it or beside it: of the cells of `box`, those of `isLeaf`. `values`: of the cells, or
-  /// of their points.
+  /// Leaves of the brick's own level, in it or beside it: of the cells of `box`, those of `isLeaf`. `values`: of
+  /// the cells, or of their points.
   void AddLeaves(const Box& box, const double* values, const std::uint8_t* isLeaf);
   /// After all of the brick's level: a leaf that touches the brick; ignored where it touches none of its leaves.
   void AddLeaf(const ForeignLeaf& leaf);
@@ -93,12 +94,14 @@ public:
   void FindMeans();
   /// The values at the corners of a larger leaf that touches the brick, which are final.
   void AddCorners(const ForeignLeaf& leaf);
-  /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is missing.
+  /// When those of all larger leaves are there: finds the values of points that hang. Throws dsm::Error if one is
+  /// missing.
   void FindHanging();
-  /// Then those of points at the border. `limits`: the least and the largest value of all cells.
+  /// Then finds the values of points at the border. `limits`: the smallest and the largest value of all cells.
   void ExtendToBorder(const std::array<double, 2>& limits);
 
-  /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their corners' values.
+  /// Calls `visit(ForeignLeaf)` for the brick's leaves that touch a box of cells of another level, with their
+  /// corners' values.
   template <class Visit>
   void ForEachLeafTouching(int level, const Box& box, const Visit& visit) const
   {
@@ -124,7 +127,7 @@ public:
   }
   /// When all leaves are there. See VoxelBrickHeader.
   std::uint8_t FindBorders() const;
-  /// At the points of the brick, x fastest. Those that no leaf touches are 0.
+  /// The values at the points of the brick, x fastest. Points that no leaf touches have 0.
   const LevelNumbers& GetValues() const { return this->Values; }
 
 private:
@@ -166,7 +169,7 @@ private:
   /// For values of points: that of a leaf of the level at one of its corners.
   void OfferValue(const Index3& point, int level, double value);
   ForeignLeaf GetLeaf(const Index3& cell) const;
-  /// What fills the octant of a point.
+  /// Returns the leaf that fills an octant of a point.
   Corner GetOctant(const Index3& point, int octant) const;
   /// Its level, or Smaller.
   int GetOctantLevel(const Index3& point, int octant) const;

@@ -17,7 +17,8 @@ namespace bricks
 class LevelCubes
 {
 public:
-  /// The number of the cube of a level that has a cell, which must not be negative. Adds one without leaves if there is none.
+  /// The number of the cube of a level that has a cell, which must not be negative. Adds one without leaves if
+  /// there is none.
   std::size_t Find(int level, const Index3& cell);
   const std::vector<LevelCube>& GetAll() const { return this->All; }
   /// Counts a leaf of cube `number`; `cell`: of the level.
@@ -36,8 +37,8 @@ private:
   std::map<std::tuple<int, std::int64_t, std::int64_t, std::int64_t>, std::size_t> Numbers;
 };
 
-/// The leaves that one rank has, with their values. Implemented over VTK's AMR and hyper tree grids. Reading is safe from one
-/// thread at a time.
+/// The leaves that one rank has, with their values. Implemented over VTK's AMR and hyper tree grids. Reading is
+/// safe from one thread at a time.
 class LevelSource
 {
 public:
@@ -49,9 +50,9 @@ public:
   /// Returns whether values are of points, the corners of leaves, and not of cells.
   virtual bool IsOfPoints() const = 0;
 
-  /// Reads cube `number` of GetCubes. `isLeaf`: one byte a cell of the cube, Edge^3, x fastest; set to 1 for this rank's
-  /// leaves and to 0 elsewhere. `values`: of the cells likewise, or of the points, (Edge + 1)^3; what belongs to no leaf is
-  /// left as it is.
+  /// Reads cube `number` of GetCubes. `isLeaf`: one byte a cell of the cube, Edge^3, x fastest; set to 1 for this
+  /// rank's leaves and to 0 elsewhere. `values`: of the cells likewise, or of the points, (Edge + 1)^3; what
+  /// belongs to no leaf is left as it is.
   virtual void ReadCube(std::size_t number, double* values, std::uint8_t* isLeaf) const = 0;
 };
 

@@ -12,7 +12,8 @@
 namespace bricks
 {
 
-/// One array of a dataset of levels, in bricks: voxel bricks of points, whose mask has the leaves. Shared by all that draw it.
+/// One array of a dataset of levels, in bricks: voxel bricks of points, whose mask has the leaves. Shared by all
+/// that draw it.
 struct LevelVoxels
 {
   LevelLattice Lattice;

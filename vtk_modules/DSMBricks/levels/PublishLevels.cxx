@@ -38,7 +38,7 @@ void Append(std::vector<std::byte>& bytes, const T* items, std::size_t count)
   bytes.insert(bytes.end(), first, first + count * sizeof(T));
 }
 
-/// What a message to the owner of a brick has, after a number of these.
+/// Contents of a message to the owner of a brick, which begins with one of these.
 enum class Content : std::uint64_t
 {
   Leaves, ///< of the brick's level: a Box, values, and flags
@@ -311,7 +311,7 @@ private:
       {
         continue;
       }
-      // Of leaves within a larger cell, those in its corners touch its corners.
+      // The leaves in the corners of a larger cell touch its corners.
       const Index3 ratio = level < cube.Level ? scales.GetRatio(level, cube.Level) : Index3(1);
       const Index3 other = scales.Get(level);
       this->Lattice.ForEachTouching(cube.Level, filled, level,

@@ -10,8 +10,8 @@
 namespace bricks
 {
 
-/// One rank's primitives, numbered from 0, as they are sorted in space and sent to the ranks that put them in bricks: each
-/// has a place, and a record of the same size. Several threads call at the same time.
+/// One rank's primitives, numbered from 0, as they are sorted in space and sent to the ranks that put them in
+/// bricks: each has a place, and a record of the same size. Several threads call at the same time.
 class RecordReader
 {
 public:

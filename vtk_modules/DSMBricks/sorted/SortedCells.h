@@ -13,10 +13,11 @@
 namespace bricks
 {
 
-/// Primitives in spatial order (the paper, section 4.3), cut into cells of at most a brickful. A cell is a part of the
-/// octree over all, halved along one axis at a time, so the codes of its primitives begin with the same bits. The cells are
-/// found by counting on all ranks together, so they are a function of the primitives, not of who has what. Where the
-/// paper's preprocessing rewrites a file, here only 16 bytes a primitive are sorted, and each rank its own.
+/// Primitives in spatial order (the paper, section 4.3), cut into cells of at most a brickful. A cell is a part of
+/// the octree over all, halved along one axis at a time, so the codes of its primitives begin with the same bits.
+/// The cells are found by counting on all ranks together, so they are a function of the primitives, not of who has
+/// what. Where the paper's preprocessing rewrites a file, here only 16 bytes a primitive are sorted, and each rank
+/// its own.
 class SortedCells
 {
 public:

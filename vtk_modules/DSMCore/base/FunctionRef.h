@@ -13,8 +13,8 @@ namespace dsm
 template <class Signature>
 class FunctionRef;
 
-/// Refers to something that can be called, for a parameter: unlike std::function it needs no memory,
-/// so that to call a function that other ranks count on cannot fail. What it refers to must outlive it.
+/// Refers to something that can be called, for a parameter: unlike std::function it needs no memory, so that
+/// calling a function that other ranks count on cannot fail. The referenced function must outlive it.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)>
 {

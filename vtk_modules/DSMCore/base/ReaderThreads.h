@@ -17,8 +17,8 @@ namespace dsm
 class ReaderThreads
 {
 public:
-  /// Those of the process. They start when there is something to do first, and end with the process, when
-  /// the reads that they are at have come back.
+  /// The threads that all readers of the process share. They start with the first job, and end with the process,
+  /// after the reads that are under way.
   static ReaderThreads& GetShared();
 
   explicit ReaderThreads(int count);

@@ -92,7 +92,7 @@ std::size_t BlockFetcher::GetRoomForOwn() const
     room =
       std::max(room, directory.IsFromSource() ? this->CountFootprint(directory.GetLargest()) : 0);
   }
-  return this->Messages.GetSize() > 1 ? room : 0; // alone there is nobody to wait for
+  return this->Messages.GetSize() > 1 ? room : 0; // a single rank waits for no other
 }
 
 bool BlockFetcher::IsAnyPaired() const
@@ -321,7 +321,7 @@ void BlockFetcher::Arrive(const BlockWant& block, const std::byte* bytes, BlockM
     throw Error("A block source delivered block " + std::to_string(block.Id) +
       ", which was not requested. This is a bug in the program.");
   }
-  // When this throws, the read is given up with the frame.
+  // If this throws, the read is abandoned with the frame.
   this->Land(block, bytes, memory);
   {
     const std::lock_guard<std::mutex> lock(this->Guard);

@@ -113,7 +113,7 @@ protected:
   {
     return block.From->GetDirectory().GetOwner(block.Id) == this->Messages.GetRank();
   }
-  /// That source; null when the block never leaves memory.
+  /// Returns the source that can bring a block again; null if the block never leaves memory.
   virtual BlockSource* FindSource(const BlockWant& block) const = 0;
   /// Throws Error when a frame cannot begin. No lock.
   virtual void CheckBudget() const = 0;
@@ -129,7 +129,7 @@ protected:
   /// Brings a block that has come where it belongs, within the room set aside. `memory` has its bytes, or is
   /// null where these are a message's. No lock. When it throws, nothing has changed.
   virtual void Land(const BlockWant& block, const std::byte* bytes, BlockMemory& memory) = 0;
-  /// So that the next Show does not fail. May throw std::bad_alloc.
+  /// Allocates what the next Show needs, which cannot fail then. May throw std::bad_alloc.
   virtual void PrepareToShow() {}
   /// Lets workers have the block that has landed, with what Land made of its memory, which may be kept. Does
   /// not fail.
@@ -142,17 +142,17 @@ protected:
   virtual void Forget(const BlockSegment& segment, const std::vector<bool>& which) = 0;
   /// Returns whether a foreseen block is pending or cached, and no worker has used it.
   virtual bool IsUnused(const BlockWant& block) const = 0;
-  /// The frame is over: it becomes an ordinary block. Whether it was here and unused.
+  /// Called after a frame: a foreseen block becomes an ordinary one. Returns whether it was here and unused.
   virtual bool Settle(const BlockWant& block) = 0;
   virtual void AddCounters(StoreCounters& counters) const = 0;
 
   // -- Moments of a frame at which a store may have more to do; under the lock --
 
   virtual void Opened() {}
-  /// The frame is open no more: cancelled, or over. Before, and after the queues were emptied.
+  /// Called at the end of a frame, finished or cancelled: before and after the queues are emptied.
   virtual void Closing() {}
   virtual void Closed() {}
-  /// Before the queues are looked at. Returns whether it did anything.
+  /// Called before the queues are processed. Returns whether it did anything.
   virtual bool BeginService() { return false; }
   /// Returns whether the store has work for the communication thread apart from the queues. No
   /// lock.
@@ -162,19 +162,19 @@ protected:
 
   // -- For the stores, under the lock --
 
-  /// Queues a block that is absent, or joins those who wait for it. Returns whether it joined, or the system was
-  /// advised of the block before.
+  /// Queues a block that is absent, or joins the workers that wait for it. Returns whether it joined, or the system
+  /// was advised of the block before.
   bool Want(const BlockWant& block);
   /// Lets a worker that misses a block read it by itself, without the lock. This requires that no other
   /// thread reads it, that there is room, and that the read does not wait; it avoids waking threads. Returns
   /// whether the block is here now. If not, the worker has to call Want, if the frame is still open, because
   /// others may wait by now.
   bool ReadAtOnce(FetchWorker& worker, const BlockWant& block, std::unique_lock<std::mutex>& lock);
-  /// A worker misses a block, or one or both of a pair, and waits until all are here or the frame is open no more. Those
+  /// A worker misses a block, or one or both of a pair, and waits until all are here or the frame has ended. Those
   /// that are here stay meanwhile. `keeps`: all stay until the worker has its slot back.
   void WaitFor(FetchWorker& worker, std::initializer_list<BlockWant> blocks,
     std::unique_lock<std::mutex>& lock, WorkerSlots* slots, bool keeps);
-  /// Throws why a block cannot be had now.
+  /// Throws the reason why a block is not available now.
   [[noreturn]] void Refuse(const BlockSegment& segment) const;
   std::size_t GetFootprint(const BlockWant& block) const
   {
@@ -184,8 +184,8 @@ protected:
   std::size_t GetRoomForOwn() const;
   /// Returns whether workers read blocks of any segment in pairs.
   bool IsAnyPaired() const;
-  /// Throws Error when a cache of so many bytes cannot hold the largest block that comes and goes, of so many bytes, or a
-  /// pair of such, and one of the rank's own.
+  /// Throws Error when a cache of so many bytes cannot hold the largest block that comes and goes, of so many
+  /// bytes, or a pair of such, and one of the rank's own.
   void CheckCache(std::size_t cacheBytes, std::size_t largest) const;
   bool IsOpenFor(const BlockSegment& segment) const
   {

@@ -53,8 +53,8 @@ public:
   void BeginFrame();
   void EndFrame();
 
-  /// The next Submit asks the block's owner for it; it is pending from now on. What comes is taken in
-  /// from where it is in the message, within Messenger::Progress.
+  /// Makes the block pending; the next Submit requests it from its owner. Messenger::Progress delivers the reply,
+  /// without a copy of the message.
   void Begin(const BlockWant& block) override;
   bool Submit() override;
   bool Poll(const Deliver&) override { return false; }
@@ -62,14 +62,14 @@ public:
   void Abandon() noexcept override;
   std::size_t GetPendingCount() const { return this->Pending.size(); }
 
-  /// A block that this rank owns has come to memory: those who asked for it get it.
+  /// Sends a block that has come to the memory of this rank, its owner, to the ranks that requested it.
   void Answer(const BlockWant& block, const std::byte* bytes);
-  /// Often: answers those who wait for other replies to leave. Returns whether it did anything.
+  /// To be called often: sends answers that had to wait until other replies left. Returns whether it did anything.
   bool AnswerLater();
   /// Returns whether other ranks asked for blocks that were not in memory. Any thread.
   bool HasDebts() const { return this->DebtCount.load() != 0; }
-  /// Blocks may have come to memory without Answer: those who asked for them get them. What is still to come is
-  /// brought.
+  /// Blocks may have come to memory without Answer: sends them to the ranks that requested them, and begins to read
+  /// the others.
   void AnswerDebts();
 
   /// Messages that asked for blocks, in this frame.

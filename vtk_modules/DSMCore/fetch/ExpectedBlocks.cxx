@@ -47,8 +47,8 @@ void ExpectedBlocks::NoteAdded(const BlockSegment& segment) noexcept
   {
     return;
   }
-  // Of several equal fingerprints, take the last: a volume's colors are retired before its
-  // isosurface array, and published after it.
+  // Take the last of several equal fingerprints: a volume's colors are retired before its isosurface array, and
+  // published after it.
   const std::uint64_t fingerprint = segment.GetDirectory().GetFingerprint();
   const auto like = std::find_if(this->Gone.rbegin(), this->Gone.rend(),
     [=](const Retired& retired) { return retired.Fingerprint == fingerprint; });

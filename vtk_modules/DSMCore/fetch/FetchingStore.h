@@ -43,10 +43,10 @@ public:
   bool Service();
   /// Communication thread: from now on every Acquire that would wait throws Error(cause).
   void Cancel(const std::string& cause);
-  /// Communication thread, often after this rank's workers have stopped: gives up what Prefetch wanted
-  /// and was not asked for yet. Whether the rest has come; only then may the rank say that it is done,
-  /// since no answer may be under way to a rank that has left the frame. True after Cancel, behind
-  /// which all ranks wait for one another anyway.
+  /// Communication thread, often after this rank's workers have stopped: gives up blocks that Prefetch queued and
+  /// that were not requested yet. Returns whether all others have come. Only then may the rank report that it is
+  /// done, since no answer may be under way to a rank that has left the frame. True after Cancel, behind which all
+  /// ranks wait for one another anyway.
   bool Drain();
   /// Communication thread, after all ranks' workers have stopped.
   void EndFrame();

@@ -17,9 +17,9 @@ namespace dsm
 /// old memory waits for the last reader (BlockCache).
 enum class LineState : std::uint8_t
 {
-  Absent,   ///< not here, and nobody asked for it
-  Foreseen, ///< likely to be needed; nobody waits for it, and no read has begun
-  Wanted,   ///< somebody waits for it; no read has begun, for want of memory
+  Absent,   ///< not here, and not requested
+  Foreseen, ///< likely to be needed; no worker waits for it, and no read has begun
+  Wanted,   ///< a worker waits for it; no memory to read it yet
   Pending,  ///< its source, or a worker from it, reads it; memory is set aside for it
   Cached,   ///< here, and may be evicted
   Zeroed,   ///< pages of zeros stand in for it until the end of a frame that was cancelled
@@ -33,7 +33,7 @@ enum class BlockUse : std::uint8_t
 {
   Idle,      ///< not used since the clock's hand passed
   Recent,    ///< used since
-  Prefetched ///< nobody has used it yet; before it is here, too
+  Prefetched ///< not used yet; also before it is here
 };
 
 /// Status of a block for the handling of misses; under the store's lock.

@@ -35,8 +35,8 @@ struct ReadingSource::Shared
 
   std::mutex Guard;
   Messenger* Messages = nullptr;
-  std::uint64_t Round = 0; ///< grows when all is given up
-  std::vector<Done> Come;
+  std::uint64_t Round = 0; ///< grows when all reads are abandoned
+  std::vector<Done> Arrived;
 
   bool IsWanted(std::uint64_t round)
   {
@@ -49,7 +49,7 @@ struct ReadingSource::Shared
     const std::lock_guard<std::mutex> lock(this->Guard);
     if (this->Round == round)
     {
-      this->Come.push_back(std::move(done)); // room was made by whoever handed the read over
+      this->Arrived.push_back(std::move(done)); // within the reserved room
       this->Messages->WakeUp();
     }
   }
@@ -62,7 +62,7 @@ ReadingSource::ReadingSource(
   , State(std::make_shared<Shared>())
 {
   this->State->Messages = &messenger;
-  this->State->Come.reserve(MostReads);
+  this->State->Arrived.reserve(MostReads);
   this->Reading.reserve(MostReads);
 }
 
@@ -165,13 +165,13 @@ void ReadingSource::CheckDisk()
 
 bool ReadingSource::Poll(const Deliver& deliver)
 {
-  std::vector<Shared::Done> come;
-  come.reserve(MostReads);
+  std::vector<Shared::Done> arrived;
+  arrived.reserve(MostReads);
   {
     const std::lock_guard<std::mutex> lock(this->State->Guard);
-    come.swap(this->State->Come);
+    arrived.swap(this->State->Arrived);
   }
-  for (Shared::Done& done : come)
+  for (Shared::Done& done : arrived)
   {
     this->Reading.erase(std::find_if(this->Reading.begin(), this->Reading.end(),
       [&](const Wanted& wanted) { return wanted.Block == done.Block; }));
@@ -188,7 +188,7 @@ bool ReadingSource::Poll(const Deliver& deliver)
   }
   this->HandOver();
   this->CheckDisk();
-  return !come.empty() || !atHand.empty();
+  return !arrived.empty() || !atHand.empty();
 }
 
 void ReadingSource::Abandon() noexcept
@@ -198,7 +198,7 @@ void ReadingSource::Abandon() noexcept
   this->AtHand.clear();
   const std::lock_guard<std::mutex> lock(this->State->Guard);
   ++this->State->Round;
-  this->State->Come.clear();
+  this->State->Arrived.clear();
 }
 
 bool ReadingSource::ReadWithoutWaiting(BlockId id, std::byte* block, std::size_t bytes) const

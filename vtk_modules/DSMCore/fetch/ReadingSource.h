@@ -18,10 +18,10 @@ namespace dsm
 {
 
 /// Brings a rank's own blocks by a BlockReader, on the process's ReaderThreads. The thread that reads a block
-/// allocates its memory, which is handed on when it is complete: so nobody ever waits for a read that is
-/// given up, however long the disk takes. What the reader has at hand needs no thread. One that was not
-/// read for PartOfSilence of the time that ranks may be silent (Messenger::SetSilenceLimit) fails the frame,
-/// before whoever waits for it takes its owner for stuck.
+/// allocates its memory, which is handed on when it is complete. So the program never waits for an abandoned read,
+/// however long the disk takes. Blocks that the reader can give without waiting need no thread. If a block was not
+/// read for PartOfSilence of the time that ranks may be silent (Messenger::SetSilenceLimit), the frame fails,
+/// before the ranks that wait for the block treat its owner as failed.
 class ReadingSource final : public BlockSource
 {
 public:

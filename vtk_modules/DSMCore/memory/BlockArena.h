@@ -7,10 +7,9 @@
 namespace dsm
 {
 
-/// One run of zeroed memory for the blocks that a rank owns. Straight from the system: pages take
-/// memory when they are first written, in large pages where the system offers them (bricks are read
-/// in no order, and small pages would exhaust the processor's address cache), and all of it goes
-/// back at once.
+/// One run of zeroed memory for the blocks that a rank owns. It comes straight from the system: pages take memory
+/// when they are first written, and all of it goes back at once. The pages are large where the system offers them,
+/// because bricks are read in no order, and small pages would exhaust the processor's address cache.
 class BlockArena
 {
 public:

@@ -22,7 +22,7 @@ namespace dsm
 class BlockHeap
 {
 public:
-  /// That of the process.
+  /// The heap that all stores of the process share.
   static BlockHeap& GetShared();
 
   BlockHeap() = default;

@@ -18,7 +18,7 @@ std::uint64_t ReadNumber(const std::string& path)
 {
   std::ifstream file(path);
   std::uint64_t value = 0;
-  return file >> value ? value : Unknown; // "max" is no number
+  return file >> value ? value : Unknown; // "max" is not a number
 }
 
 /// The value behind a name in a file of lines such as "inactive_file 4096"; 0 without it.

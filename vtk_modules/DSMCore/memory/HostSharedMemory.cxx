@@ -194,7 +194,7 @@ std::optional<HostSharedMemory::View> HostSharedMemory::Open(const Ticket& ticke
   {
     return {};
   }
-  // Without memory of its own, since ranks open one another's where they cannot tell of a failure.
+  // Allocates nothing, since ranks open one another's memory where they cannot report a failure.
   char path[64];
   std::snprintf(path, sizeof(path), "/proc/%llu/fd/%lld",
     static_cast<unsigned long long>(ticket.Process), static_cast<long long>(ticket.File));

@@ -11,10 +11,10 @@
 namespace dsm
 {
 
-/// Zeroed memory of one rank that the other ranks of its host can read in place: an anonymous file
-/// (memfd), which they open through /proc. It has no name, and goes with its last user: nothing is
-/// left behind, whoever crashes, and the size of /dev/shm does not matter. In large pages where the
-/// system has them, as BlockArena.
+/// Zeroed memory of one rank that the other ranks of its host can read in place: an anonymous file (memfd), which
+/// they open through /proc. It has no name, and goes with its last user: nothing is left behind when a process
+/// crashes, and the size of /dev/shm does not matter. Its pages are large where the system offers them, as in
+/// BlockArena.
 class HostSharedMemory
 {
 public:

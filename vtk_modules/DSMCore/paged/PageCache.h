@@ -13,10 +13,10 @@
 namespace dsm
 {
 
-/// Which remote blocks have pages, within a budget that is never exceeded: room is set aside before
-/// a block is requested. Replacement is CLOCK, its reference bits being the blocks' hints; in a store
-/// of pure faults nobody tells what is in use, and it is first in, first out. What was prefetched and not
-/// used yet is passed by once. It keeps the accounts only: the pages themselves are the store's to move.
+/// Records which remote blocks have pages, within a budget that is never exceeded: room is set aside before a block
+/// is requested. Replacement is CLOCK, its reference bits being the blocks' hints; in a store of pure faults the
+/// use of blocks is unknown, and it is first in, first out. Blocks that were prefetched and not used yet are passed
+/// by once. It keeps the accounts only: the pages themselves are the store's to move.
 ///
 /// Communication thread only, under the store's lock.
 class PageCache

@@ -136,8 +136,8 @@ PageFaults::~PageFaults()
 
 void PageFaults::Attach(std::byte* begin, std::size_t bytes)
 {
-  // Read only: our own copies do not need to write through the mapping. Small pages, since large
-  // ones would come and go as a whole. A child must not have it: its descriptor is ours.
+  // Read only: our own copies do not need to write through the mapping. Small pages, since large ones could only
+  // come and go entirely. A child must not have it: its descriptor is ours.
   if (mprotect(begin, bytes, PROT_READ) != 0 || madvise(begin, bytes, MADV_DONTFORK) != 0)
   {
     Fail("preparing " + std::to_string(bytes) + " bytes of address space");

@@ -11,8 +11,8 @@
 namespace dsm
 {
 
-/// Makes ranges of addresses wait for their bytes: a thread that reads an absent page stops, its
-/// fault is reported, and it goes on when the page is there. One for each page store.
+/// Makes ranges of addresses wait for their bytes: a thread that reads an absent page stops, its fault is reported,
+/// and it continues when the page is there. One for each page store.
 ///
 /// It uses userfaultfd(2): the kernel reports faults through a file descriptor, and fills a page before
 /// it maps it (UFFDIO_COPY), so a page is seen either whole or not at all. Absent pages take no memory.
@@ -34,7 +34,7 @@ public:
   {
     Placed,  ///< the page was fetched
     Present, ///< the page was there before anyone looked at the fault
-    Refused  ///< no business of ours: the thread gets SIGSEGV, as for any other bad address
+    Refused  ///< not a store's address: the thread gets SIGSEGV, as for any other bad address
   };
 
   /// Throws Error with a remedy when the kernel has no userfaultfd or does not allow it.

@@ -47,8 +47,8 @@ namespace dsm
 /// - No address of a block may be handed to a system call or to MPI: only a load can wait.
 /// - A worker that waits in a fault when the frame is cancelled reads zeros from then on; its next
 ///   Acquire throws.
-/// - A process made by fork must leave the store alone; reading remote blocks ends it by SIGSEGV.
-///   What this rank owns can be read there. It never disturbs the parent.
+/// - A process made by fork must leave the store alone; reading remote blocks ends it by SIGSEGV. The child can
+///   read blocks that this rank owns. It never disturbs the parent.
 ///
 /// Several stores may share a messenger; one of them at a time has a frame open.
 class PagedStore : public FetchingStore
@@ -97,8 +97,8 @@ public:
   std::shared_ptr<BlockSegment> Publish(
     std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
-  /// Collective in order (no message is exchanged), between frames: forgets the segment and its
-  /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
+  /// Collective in order (no message is exchanged), between frames: forgets the segment and its cached blocks. The
+  /// blocks of it that this rank owns stay until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
   /// Index in [0, Settings::Workers). The reference is valid until the number of workers changes.
@@ -192,7 +192,7 @@ private:
   /// block.
   bool FindRemote(const std::byte* address, BlockId& id) const;
   bool Contains(const std::byte* address) const;
-  /// Those of others can no longer be read.
+  /// Makes the blocks of other ranks unreadable.
   void Detach();
 
   PageLayout Layout;
@@ -200,7 +200,7 @@ private:
   std::byte* Base = nullptr;
   /// Address and hint of every block.
   std::unique_ptr<std::atomic<std::uintptr_t>[]> Entries;
-  /// As many zeros, hence without hints; they take no memory. What workers look at while closed.
+  /// As many zeros, hence without hints, for workers while the store is closed. They take no memory.
   AddressRange ClosedEntries;
   std::atomic<const std::atomic<std::uintptr_t>*> VisibleEntries{ nullptr };
   bool IsPure = false;

@@ -26,9 +26,8 @@ namespace dsm
 /// The store's slow paths: a block lands in its pages at once (PageFaults::Place), is shown by its hint,
 /// and is evicted by taking hint and pages away; threads wait for it politely or in a fault.
 ///
-/// A listening thread takes the faults: it queues them, answers those that are none of ours, and
-/// after a cancellation satisfies them with zeros, so that no thread waits for a communication
-/// thread that has left the frame.
+/// A listening thread takes the faults: it queues them, passes on those outside the store, and after a cancellation
+/// satisfies them with zeros, so that no thread waits for a communication thread that has left the frame.
 class PagedStore::Internals final : public BlockFetcher
 {
 public:
@@ -50,7 +49,7 @@ public:
   bool IsEntranceOpen() const { return this->Entrance.load(std::memory_order_acquire); }
 
   Settings Current;
-  /// Null with one rank, unless sources bring blocks, and when it cannot be had.
+  /// Null with one rank, unless sources bring blocks, and if the system refuses it.
   std::shared_ptr<PageFaults> Faults;
   std::string FaultsRefusal;
 
@@ -140,7 +139,7 @@ private:
   /// Exception of the listening thread; the communication thread fails the frame with it.
   std::exception_ptr ListenersFailure;
   std::atomic<bool> HasListenerFailed{ false };
-  std::condition_variable HasClosed; ///< or was cancelled: Phase is Open no more
+  std::condition_variable HasClosed; ///< or was cancelled: Phase is no longer Open
   bool HasZeros = false;             ///< there are lines that are Zeroed
   /// A block stays at least this long, so that the threads that were woken for it get to read it.
   static constexpr std::chrono::microseconds ShortestHold{ 10 };

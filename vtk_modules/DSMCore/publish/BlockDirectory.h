@@ -29,8 +29,8 @@ public:
   /// That source is a disk of the owner's, which no other rank can read.
   void SetOnOwnersDisk() { this->FromSource = this->OnOwnersDisk = true; }
   bool IsOnOwnersDisk() const { return this->OnOwnersDisk; }
-  /// A worker reads each of its blocks together with one of another segment, as the values of cells with their topology:
-  /// AcquirePair of the stores.
+  /// A worker reads each of its blocks together with one of another segment, as the values of cells with their
+  /// topology: AcquirePair of the stores.
   void SetPaired() { this->Paired = true; }
   bool IsPaired() const { return this->Paired; }
   /// The largest block; 0 when there is none.

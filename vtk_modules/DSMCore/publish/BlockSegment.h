@@ -46,8 +46,8 @@ public:
 
   /// Returns the address of a block that this rank owns. The block is zero until it is filled.
   virtual std::byte* GetOwned(BlockId id) const = 0;
-  /// Collective, when all ranks have set out their memory: they may look at one another's. What one
-  /// of them lacks for it, Seal says.
+  /// Collective, when all ranks have set out their memory: they may look at one another's. If a rank lacks memory
+  /// for that, Seal throws.
   virtual void Meet(Messenger&) {}
   /// Local, when all blocks that this rank owns are complete. May throw.
   virtual void Seal() = 0;

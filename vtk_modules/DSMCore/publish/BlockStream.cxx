@@ -67,7 +67,7 @@ bool BlockStream::Work(FunctionRef<bool()> feed)
   return more || this->TellEnd();
 }
 
-/// Behind the last message to each. Called again after it has thrown, it tells those who do not know
+/// Behind the last message to each. Called again after it has thrown, it notifies the ranks that were not reached
 /// yet; returns whether there was anything to do.
 bool BlockStream::TellEnd()
 {

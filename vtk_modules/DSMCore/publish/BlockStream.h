@@ -35,10 +35,10 @@ public:
   /// Within `feed`.
   void Post(int destination, BlockId id, std::vector<std::byte>&& bytes);
 
-  /// Collective. `feed` posts a little, and returns false when there is nothing left. Returns when every
-  /// rank has posted all, and all of it has come. When anything throws on this rank, it posts no more
-  /// and discards what comes, until all others are done too. Returns what has gone wrong on this rank;
-  /// it is for the caller to let the ranks agree.
+  /// Collective. `feed` posts a little, and returns false when there is nothing left. Returns when every rank has
+  /// posted all, and all of it has come. When anything throws on this rank, the rank stops posting and discards
+  /// what comes, until all others are done too. Returns the failure of this rank; the caller has to let the ranks
+  /// agree.
   FirstFailure Run(FunctionRef<bool()> feed);
 
 private:

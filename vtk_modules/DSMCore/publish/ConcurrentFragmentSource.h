@@ -16,9 +16,9 @@
 namespace dsm
 {
 
-/// Runs several sources, a thread each, ahead of the one that publishes; for sources that compute
-/// or convert what they yield. At most `Ahead` fragments wait at any time. What a source throws is
-/// rethrown by Next; too when a thread cannot be started, so that the publication fails on all ranks.
+/// Runs several sources, a thread each, ahead of the one that publishes; for sources that compute or convert what
+/// they yield. At most `Ahead` fragments wait at any time. Next rethrows the exceptions of sources, and throws if a
+/// thread cannot be started, so that the publication fails on all ranks.
 class ConcurrentFragmentSource final : public FragmentSource
 {
 public:

@@ -18,8 +18,8 @@ namespace dsm
 class Publications
 {
 public:
-  /// Collective. What was added for `content` on every rank and is still used; null where there is
-  /// nothing. `content` says what this rank's part is made of, and is another on each rank.
+  /// Collective. Returns the publication that was added for `content` on every rank and is still used; null if
+  /// there is none. `content` identifies the data of this rank's part, so it differs from rank to rank.
   template <class T>
   std::shared_ptr<const T> Find(Messenger& messenger, std::uint64_t content)
   {

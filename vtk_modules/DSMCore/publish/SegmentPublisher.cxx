@@ -50,8 +50,7 @@ std::shared_ptr<BlockSegment> SegmentPublisher::Create(
   std::uint64_t available = 0;
   failure.Try([&] { available = GetAvailableHostMemory(); });
   const auto fingerprints = this->Messages.AllGatherValue(directory.GetFingerprint());
-  // Stores that share a messenger draw from one sequence, so the number names the segment among all
-  // of theirs.
+  // Stores that share a messenger draw from one sequence, so the number identifies the segment in all of them.
   const std::uint32_t number = this->Messages.BeginSession();
   std::shared_ptr<BlockSegment> segment;
   this->Messages.RunTogether(this->What,

@@ -184,11 +184,11 @@ private:
     bool IsShort = false; ///< true if memory is short
   };
 
-  /// Collective: for what is published and, unless null, for what is to be, which may then be added
-  /// without fail. `fallback`: should copies fail that Automatic wants. Throws the same Error, which
-  /// begins with `what`, on every rank: MemoryShortage, when it is that.
+  /// Collective: decides for what is published and, unless null, for what is to be, which may then be added without
+  /// fail. `fallback`: the decision if the copies that Automatic wants fail. Throws the same Error, which begins
+  /// with `what`, on every rank, of kind MemoryShortage if memory does not suffice.
   Decision Decide(std::string_view what, const BlockDirectory* next, Decision& fallback);
-  /// Asked before any rank takes memory. Only where there is another place than memory.
+  /// Called before any rank takes memory, and only if blocks can be kept elsewhere.
   bool LacksHostMemory(const BlockDirectory* next) const;
   std::shared_ptr<BlockSegment> PublishToScratch(std::string_view what, BlockDirectory&& directory,
     FragmentSource& source, FragmentSink& sink, FunctionRef<void(double)> progress);

@@ -27,7 +27,7 @@ public:
   /// In memory while they are put together.
   static constexpr std::size_t MostInMemory = 16;
 
-  /// Those of `rank` among `ranks`, to which blocks are dealt in turn.
+  /// For the blocks of `rank` among `ranks`, to which they are dealt in turn.
   ScratchBlocks(const BlockDirectory& directory, int rank, int ranks);
 
   /// Returns the bytes of the tables, without blocks, on the rank that needs most.

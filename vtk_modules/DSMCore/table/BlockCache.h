@@ -14,10 +14,10 @@
 namespace dsm
 {
 
-/// The memory for blocks that come and go, within a budget that is never exceeded: room is set
-/// aside before a block is requested, and what was evicted counts until it is freed. Replacement is
-/// CLOCK, one sweeping hand, an approximation of the paper's least recently used order that needs
-/// no list to be kept on a hit. What was prefetched and not used yet is passed by once.
+/// The memory for blocks that come and go, within a budget that is never exceeded: room is set aside before a block
+/// is requested, and what was evicted counts until it is freed. Replacement is CLOCK, one sweeping hand, an
+/// approximation of the paper's least recently used order that needs no list to be kept on a hit. Blocks that were
+/// prefetched and not used yet are passed by once.
 ///
 /// Under the store's lock; on the communication thread alone where something leaves: it answers other ranks
 /// from the blocks, without the lock. Epochs: see ObjectStore::Worker.

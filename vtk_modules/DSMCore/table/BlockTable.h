@@ -38,14 +38,14 @@ public:
   std::uint64_t GetResidentBytes() const override { return this->ResidentBytes; }
 
   std::byte* GetOwned(BlockId id) const override;
-  /// Maps the group's memory. What cannot be mapped stays absent.
+  /// Maps the group's memory. Blocks that cannot be mapped stay absent.
   void Meet(Messenger& messenger) override;
   void Seal() override;
   void Open() override;
   /// Between frames, of blocks that a source brings; the same on every rank: whether each rank has its own
   /// source read what it needs. Else the owner reads a block, once for all.
   void SetReadByAll(bool all) { this->ReadByAll = all; }
-  /// Returns the address of a block on this host; null if it is not there.
+  /// Returns the address of a block on this host; null if it is absent.
   const std::byte* Find(BlockId id) const
   {
     return this->Lines[id].Address.load(std::memory_order_acquire);

@@ -35,11 +35,11 @@ namespace dsm
 /// most one store of its reference bit; a block leaves the cache by CLOCK, and its memory is
 /// reused only after every worker has passed a quiescent point.
 ///
-/// Threads: the communication thread publishes, seals, retires and services; workers Acquire.
-/// A worker may hold a pin only while it does not Acquire another block: a worker that waits holds
-/// nothing, so a cache of one block is enough for any number of workers to go on. Two blocks at once are acquired
-/// together (AcquirePair). Of a pair, the block that is here stays while the worker waits for the other; only so many
-/// workers wait for pairs at a time that room for one block is left. So a cache of two blocks is enough then.
+/// Threads: the communication thread publishes, seals, retires and services; workers Acquire. A worker may hold a
+/// pin only while it does not Acquire another block: a worker that waits holds nothing, so a cache of one block is
+/// enough for any number of workers. Two blocks at once are acquired together (AcquirePair). The block of a pair
+/// that is here stays while the worker waits for the other; only so many workers wait for pairs at a time that room
+/// for one block is left. So a cache of two blocks is enough then.
 ///
 /// Several stores may share a messenger; one of them at a time has a frame open.
 class ObjectStore : public FetchingStore
@@ -91,8 +91,8 @@ public:
   std::shared_ptr<BlockSegment> Publish(
     std::string_view what, BlockDirectory directory, std::shared_ptr<BlockSource> source);
 
-  /// Collective in order (no message is exchanged), between frames: forgets the segment and its
-  /// cached blocks. What this rank owns of it stays until the last shared pointer goes.
+  /// Collective in order (no message is exchanged), between frames: forgets the segment and its cached blocks. The
+  /// blocks of it that this rank owns stay until the last shared pointer goes.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 
   /// Between frames: takes over what another store on this messenger has published, or hands it over,
@@ -114,11 +114,12 @@ public:
     const BlockSegment& otherSegment, BlockId otherId);
 
   /// Worker: it will probably need these blocks soon, the likeliest first. Where the bytes of those that are absent
-  /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is advised
-  /// to read it, which takes nothing of the cache; of a file's, also those that `addNeighbors` (may be empty) adds,
-  /// which lie beside it in the file. Other ranks' blocks are asked for in one go, unless too much of the cache is taken
-  /// by blocks that were prefetched and not used yet. Never waits; ids that there are not, blocks that are here or on
-  /// their way, retired segments and frames that are not open are passed by. Returns whether any block was not here.
+  /// are decides what is done. Where the worker may read a block from the host's disk by itself, the system is
+  /// advised to read it, which takes nothing of the cache; of a file's, also those that `addNeighbors` (may be
+  /// empty) adds, which lie beside it in the file. Other ranks' blocks are asked for in one go, unless too much of
+  /// the cache is taken by blocks that were prefetched and not used yet. Never waits; ids that there are not,
+  /// blocks that are here or on their way, retired segments and frames that are not open are passed by. Returns
+  /// whether any block was not here.
   bool Prefetch(const BlockSegment& segment, const BlockId* ids, std::size_t count,
     FunctionRef<void(BlockId, std::vector<BlockId>&)> addNeighbors = {});
 
@@ -142,12 +143,11 @@ private:
   /// Passes a quiescent point, the epoch having moved.
   void Announce(Worker& worker);
 
-  /// Moves on when blocks are evicted. Their addresses are cleared before the new epoch is stored
-  /// (release), so a worker that has loaded it (acquire) and announces it can no longer reach them,
-  /// and its announcement (release) follows its last read of them: once the communication thread
-  /// sees (acquire) that every worker is offline or has announced the epoch, their memory is free.
-  /// A worker comes online under the store's lock, under which blocks are evicted and freed too:
-  /// either it is seen, or it sees.
+  /// Moves on when blocks are evicted. Their addresses are cleared before the new epoch is stored (release). So a
+  /// worker that has loaded it (acquire) and announces it can no longer reach them, and its announcement (release)
+  /// follows its last read of them. Once the communication thread sees (acquire) that every worker is offline or
+  /// has announced the epoch, their memory is free. A worker comes online under the store's lock, under which
+  /// blocks are evicted and freed too: either it is seen, or it sees.
   alignas(64) std::atomic<std::uint64_t> Epoch{ 1 };
   std::unique_ptr<Internals> Self;
 };

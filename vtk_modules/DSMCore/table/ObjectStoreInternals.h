@@ -72,7 +72,7 @@ private:
   bool NeedsService() const override { return this->Cache.HasLimbo(); }
 
   static void CheckMiss(const Worker& worker);
-  /// Throws when the blocks of a segment cannot be had now.
+  /// Throws if the blocks of a segment are not available now.
   void CheckOpen(Worker& worker, const BlockWant& block);
   /// Waits for both within the permits for pairs.
   void WaitInTurn(Worker& worker, const BlockWant& one, const BlockWant& other,

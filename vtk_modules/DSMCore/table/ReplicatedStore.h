@@ -52,8 +52,8 @@ public:
   ReplicatedStore(const ReplicatedStore&) = delete;
   ReplicatedStore& operator=(const ReplicatedStore&) = delete;
 
-  /// Between frames, on the communication thread; local. Throws Error within a frame and for less
-  /// than one worker. What is published already keeps its memory.
+  /// Between frames, on the communication thread; local. Throws Error within a frame and for less than one worker.
+  /// Segments that are published already keep their memory.
   void SetSettings(const Settings& settings);
   const Settings& GetSettings() const { return this->Current; }
 
@@ -69,8 +69,8 @@ public:
   void Refresh(
     std::string_view what, const BlockSegment& segment, const std::vector<bool>& changed);
 
-  /// See ObjectStore. To adopt is collective: the segment is replicated, or the same Error thrown
-  /// everywhere, and not adopted. What is surrendered has its copies dropped.
+  /// See ObjectStore. To adopt is collective: the segment is replicated, or the same Error thrown everywhere, and
+  /// not adopted. To surrender drops the copies.
   void MakeRoom(std::size_t count);
   void Adopt(std::shared_ptr<BlockTable> table);
   void Surrender(BlockTable& table);

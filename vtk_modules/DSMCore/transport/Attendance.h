@@ -9,9 +9,9 @@
 namespace dsm
 {
 
-/// Whom a rank counts on to give signs of life, and for how long each has given none: who has said that
-/// it waits for others, until it says that it goes about something else; and, in a step in which all
-/// serve one another, everybody. Who computes is not counted on, however long it takes. One thread.
+/// Records which ranks must send messages, and how long each has been silent. A rank must if it has reported that
+/// it waits for others, until it reports that it does something else; in a step in which all serve one another, all
+/// ranks must. A rank that computes need not, however long it takes. One thread.
 class Attendance
 {
 public:
@@ -20,10 +20,10 @@ public:
   {
   }
 
-  /// Whatever comes from a rank is a sign of life.
+  /// Any message from a rank ends its silence.
   void Hear(int rank) { this->Get(rank).Silence = 0.0; }
 
-  /// From now on the rank is counted on, or not.
+  /// Sets whether the rank must send messages from now on.
   void Expect(int rank, bool isExpected) { this->Get(rank) = { isExpected, 0.0 }; }
   void ExpectAll(bool areExpected)
   {

@@ -10,11 +10,11 @@
 namespace dsm
 {
 
-/// How a thread waits for messages, which nothing announces: it polls a few times (an answer within
-/// the host takes microseconds), then gives its core away between polls, then sleeps, ever longer,
-/// so that it does not starve the tracing threads of a host that it shares. A sleep takes many times as long
-/// as a message does: threads that wait for one another in turn would spend their time in it, so where
-/// nobody traces, they give their cores away for longer first.
+/// How a thread waits for messages, which nothing announces. It polls a few times (an answer within the host takes
+/// microseconds), then gives its core away between polls, then sleeps, ever longer, so that it does not starve the
+/// tracing threads of its host. A sleep takes many times as long as a message does: threads that wait for one
+/// another in turn would spend their time in it. So while no thread traces, they give their cores away for longer
+/// first.
 class BackOff
 {
 public:

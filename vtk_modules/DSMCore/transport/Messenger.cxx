@@ -22,7 +22,7 @@ constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
 constexpr int MostAttempts = 1000;
 constexpr std::chrono::milliseconds AttemptPause(10);
 
-/// Limit of unsent bytes of a collective; above it, a rank makes no more.
+/// Limit of unsent bytes of a collective; above it, a rank posts no further messages.
 constexpr std::size_t MaximumUnsentBytes = std::size_t(8) << 20;
 
 /// Equal exactly for ranks on one running machine: names repeat between containers and clusters,

@@ -62,11 +62,11 @@ public:
   /// For every rank the lowest rank of its host. Collective like GetRanksOnHost.
   const std::vector<int>& GetHosts();
 
-  // -- Ranks that are stopped, hang, or are gone --------------------------------------------------
-  // A rank that does nothing but wait tells rank 0, and rank 0 all, now and then, and when it waits no
-  // more; in ProgressUntil with work, only while all serve. Who is counted on (Attendance) and silent
-  // for too long is given up by all: what waits, and whatever is collective from then on, throws a
-  // StepAborted that names the rank and says how to go on.
+  // -- Ranks that are stopped, hang, or are gone -------------------------------------------------- A rank that
+  // does nothing but wait reports it to rank 0, and rank 0 to all, now and then, and when the wait ends; in
+  // ProgressUntil with work, only while all serve. If a rank that must report (Attendance) is silent for too long,
+  // all treat it as failed: every wait, and every collective step from then on, throws a StepAborted that names the
+  // rank and the remedy.
 
   static constexpr double DefaultSilenceLimit = 60.0;
   /// Seconds that a rank may be silent; 0: for ever. Between steps; the same on every rank.
@@ -103,18 +103,18 @@ public:
   /// threads of a host that it shares. WakeUp ends a sleep early.
   void ProgressUntil(FunctionRef<bool()> done, FunctionRef<bool()> work = {});
 
-  /// ProgressUntil for what other ranks rely on: an exception, such as of a message that is lost or
-  /// rejected, is this rank's failure, told to `fail`, and this rank goes on serving. A StepAborted is told
-  /// and thrown.
+  /// ProgressUntil for what other ranks rely on: an exception, such as of a message that is lost or rejected, is
+  /// this rank's failure; `fail` gets it, and this rank continues to serve. A StepAborted is passed to `fail` and
+  /// thrown.
   void ServeUntil(
     FunctionRef<bool()> done, FunctionRef<bool()> work, FunctionRef<void(std::exception_ptr)> fail);
 
-  /// Until all that was posted has left this rank. Does not fail, but as collectives do.
+  /// Waits until all that was posted has left this rank. Fails only as a collective step does.
   void Flush();
 
-  /// Runs a step between two agreements, which other ranks count on and which needs but little memory:
-  /// when it throws, it is tried again with the memory of a reserve, and then until there is some. What
-  /// it threw for ten seconds is thrown at last.
+  /// Runs a step between two agreements, which other ranks count on and which needs but little memory: when it
+  /// throws, it is tried again with the memory of a reserve, and then until there is some. If it still throws after
+  /// ten seconds, so does Insist.
   void Insist(FunctionRef<void()> step);
 
   /// The ranks that this one hands on to what comes from rank 0, so that it reaches all along a tree.
@@ -128,10 +128,10 @@ public:
   /// See Transport::HasUnsent.
   bool HasUnsent(MessageKind kind) const;
 
-  // -- Collectives; each begins sessions of its own -----------------------------------------------
-  // They throw the same on every rank, or on none: a rank without memory takes part with a reserve
-  // (Insist), and what a larger result takes is set aside by all, or by none. StepAborted, too: see
-  // RunStep. Of any size. What a handler throws while a collective waits is thrown by the next Progress.
+  // -- Collectives; each begins sessions of its own ----------------------------------------------- They throw the
+  // same on every rank, or on none: a rank without memory takes part with a reserve (Insist), and what a larger
+  // result takes is set aside by all, or by none. StepAborted, too: see RunStep. Results may have any size. If a
+  // handler throws while a collective waits, the next Progress rethrows it.
 
   /// Every rank's bytes, in rank order, on every rank.
   std::vector<std::vector<std::byte>> AllGather(std::vector<std::byte> mine);
@@ -153,20 +153,19 @@ public:
   /// is "`what`: Rank 2: cause", without the rank when every rank failed for the same reason.
   void RunTogether(std::string_view what, FunctionRef<void()> step);
 
-  /// Runs what the ranks do together, all of it, and returns how it went, the same on every rank. What
-  /// `step` throws ends it for all, on one rank alone, too: those that wait for that rank in another
-  /// collective leave it by a StepAborted, which `step` must let through. Between the collectives of a
-  /// step anything may be thrown, except where the next thing is BeginSession.
-  /// `isOver`: `step` sets it when the ranks have just agreed that all went well, and what is left needs no memory. Then
-  /// nothing more is exchanged. What `step` throws after that is the outcome of this rank alone, which tells the others in
-  /// the next step.
+  /// Runs a step that the ranks do together, and returns how it went, the same on every rank. An exception of
+  /// `step` ends it for all, also if only one rank throws: ranks that wait for that rank in another collective
+  /// leave it by a StepAborted, which `step` must let through. Between the collectives of a step anything may be
+  /// thrown, except where the next thing is BeginSession. `isOver`: `step` sets it when the ranks have just agreed
+  /// that all went well, and what is left needs no memory. Then nothing more is exchanged. An exception that `step`
+  /// throws after that is the outcome of this rank alone, which reports it in the next step.
   Status RunStep(FunctionRef<void()> step, const bool& isOver = false);
 
   /// AllGather of what `make` returns; what it throws is treated as by RunTogether.
   std::vector<std::vector<std::byte>> GatherTogether(
     std::string_view what, FunctionRef<std::vector<std::byte>()> make);
 
-  /// The same for rank 0 alone; the others get empty bytes. What is large goes to it and nowhere else.
+  /// The same for rank 0 alone; the others get empty bytes. Large messages go to rank 0 only.
   std::vector<std::vector<std::byte>> GatherOnRankZero(
     std::string_view what, FunctionRef<std::vector<std::byte>()> make);
 

@@ -76,8 +76,8 @@ private:
   enum class Life : std::int32_t
   {
     Waiting,
-    Leaving, ///< waits no more
-    Lost     ///< a rank is given up
+    Leaving, ///< no longer waits
+    Lost     ///< a rank is treated as failed
   };
   struct Sign
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signs of life: who is waited for, and who is given up.
+// The messages of ranks that wait, and what happens to ranks that stay silent.
 #include "DSMCore/transport/MessengerInternals.h"
 
 #include <algorithm>

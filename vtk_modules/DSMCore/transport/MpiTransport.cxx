@@ -80,8 +80,8 @@ public:
     this->Receipts.resize(static_cast<std::size_t>(this->Size));
   }
 
-  /// Does not wait for the other ranks, which may be at something else that waits for this one. What is still under way
-  /// stays with an ended transmission, until CloseEnded.
+  /// Does not wait for the other ranks, which may be at something else that waits for this one. Messages that are
+  /// still under way stay with an ended transmission, until CloseEnded.
   ~Transmission() override
   {
     if (this->IsEnded || !IsRunning())
@@ -213,7 +213,7 @@ private:
     std::vector<std::byte> Buffer;
   };
 
-  /// Receipts for one rank. What MPI reads stays as it is until it has been sent.
+  /// Receipts for one rank. The buffer that MPI reads does not change until it has been sent.
   struct Confirming
   {
     struct
@@ -427,7 +427,7 @@ private:
     return any;
   }
 
-  /// In the order in which they were matched, which is the order in which they were posted. What
+  /// In the order in which they were matched, which is the order in which they were posted. A message that
   /// `deliver` does not take stays.
   bool FinishReceives(int source, const Deliver& deliver)
   {
@@ -537,7 +537,7 @@ private:
     }
     catch (const std::exception&)
     {
-      return false; // a destructor has nobody to tell; the buffers stay, as after a timeout
+      return false; // a destructor cannot report it; the buffers stay, as after a timeout
     }
   }
 
@@ -563,7 +563,8 @@ private:
   std::vector<std::byte> Reserve; ///< for receiving when no memory is left; untouched until then
 };
 
-/// MPI deletes the attributes of MPI_COMM_SELF before it ends, while communication still works (MPI 4.0, section 11.2.4).
+/// MPI deletes the attributes of MPI_COMM_SELF before it ends, while communication still works (MPI 4.0, section
+/// 11.2.4).
 void CloseEndedBeforeMpiEnds()
 {
   static bool isAsked = false;

@@ -25,8 +25,8 @@ struct Cubic
 /// The places in (0, 1) where the derivative vanishes, ascending; returns how many.
 int FindExtrema(const Cubic& cubic, double extrema[2]);
 
-/// The first place s in [0, 1] where the cubic changes its side; values >= 0 are inside. Returns false when it does not.
-/// `last`: the value at 1, which tells the side there: the same bits as at the begin of the way that follows.
+/// The first place s in [0, 1] where the cubic changes its side; values >= 0 are inside. Returns false when it does
+/// not. `last`: the value at 1, which tells the side there: the same bits as at the begin of the way that follows.
 ///
 /// A change between the two ends always yields a place, whatever rounding does in between. Two
 /// changes are found through the extrema of the cubic (Marmitt et al. 2004, "Fast and accurate

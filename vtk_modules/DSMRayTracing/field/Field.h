@@ -18,32 +18,33 @@ class WalkSections;
 template <class FieldType, class Store>
 class WalkSurfaces;
 
-/// What a kind of field offers. A field is values in space that can be walked and sampled: all that is shown of it comes from
-/// its Walk and its Sampler by default (room field/walk). A kind derives from this, brings what follows, and replaces a
-/// default where it is faster of its own. It is a small value: what it describes is shared, and outlives the frame.
+/// Base of all kinds of fields. A field is values in space that can be walked and sampled: all that is shown of it
+/// comes from its Walk and its Sampler by default (room field/walk). A kind derives from this, brings what follows,
+/// and replaces a default where it is faster of its own. It is a small value: what it describes is shared, and
+/// outlives the frame.
 ///
-/// - `Values`: what is sampled. Several of them may have the same places: one defines the surfaces, another their colors.
+/// - `Values`: what is sampled. Several of them may have the same places: one defines the surfaces, another their
+///   colors.
 /// - `Place`: a position in the field's own coordinates. Plain data, without initial values.
-/// - `Walk<Store>`, for one worker of a store, with `Walk(Store&, Store::Worker&)` and
-///     `bool Find(field, ray, mayHold, visit) const`: calls `visit(FieldSegment<Place>)` for the segments of a ray within
-///     [ray.Min, ray.Max], in order, until it returns true; returns whether it did. May leave out segments of which
-///     `mayHold(range)` is false for the range of their values (ValuePredicates.h), which may change during the walk. A
-///     segment depends on the ray alone.
-/// - `Sampler<Store>`, for one worker of a store, which derives from PlainSampler, with `Sampler(Store&, Store::Worker&)`,
-///     `RayMask FindValues(values, places, wanted, numbers) const`: NaN where there are no data; returns the places that
-///       are in the field;
-///     `void FindGradients(values, places, wanted, gradients) const`: how fast values grow on each axis of the field's own
-///       space, as the values are between samples.
-///   Both hold at most one pin, and none while they acquire or when a call returns. They may wait for bricks, and throw what
-///   the store throws.
+/// - `Walk<Store>`, for one worker of a store, with `Walk(Store&, Store::Worker&)` and `bool Find(field, ray,
+///   mayHold, visit) const`: calls `visit(FieldSegment<Place>)` for the segments of a ray within [ray.Min,
+///   ray.Max], in order, until it returns true; returns whether it did. May leave out segments of which
+///   `mayHold(range)` is false for the range of their values (ValuePredicates.h), which may change during the walk.
+///   A segment depends on the ray alone.
+/// - `Sampler<Store>`, for one worker of a store, which derives from PlainSampler, with `Sampler(Store&,
+///   Store::Worker&)`, `RayMask FindValues(values, places, wanted, numbers) const`: NaN where there are no data;
+///   returns the places that are in the field; `void FindGradients(values, places, wanted, gradients) const`: how
+///   fast values grow on each axis of the field's own space, as the values are between samples. Both hold at most
+///   one pin, and none while they acquire or when a call returns. They may wait for bricks, and throw what the
+///   store throws.
 /// - `const Values& GetValues() const`: those that define surfaces and media.
-/// - `bool FindPlace(point, place) const`: the place of a point in world space as far as it is known without bricks; false
-///     where the field surely is not. Sampler::FindPlaces finds the rest.
+/// - `bool FindPlace(point, place) const`: the place of a point in world space as far as it is known without
+///   bricks; false where the field surely is not. Sampler::FindPlaces finds the rest.
 /// - `void MovePlace(point, place) const`: moves a place to a point in world space that is in the same cell.
-/// - `glm::dvec3 GetNormal(gradient, rayDirection) const`: the unit normal in world space, in which the values fall; against
-///     the ray, where there is no gradient.
-/// - `double GetFinestLength(worldToSpace = 1) const`: the length of the smallest detail, such as the shortest edge of a
-///     cell, in the space to which the matrix leads.
+/// - `glm::dvec3 GetNormal(gradient, rayDirection) const`: the unit normal in world space, in which the values
+///   fall; against the ray, where there is no gradient.
+/// - `double GetFinestLength(worldToSpace = 1) const`: the length of the smallest detail, such as the shortest edge
+///   of a cell, in the space to which the matrix leads.
 /// - `double GetGrowth(gradient) const`: how much values grow in a cell of mean size.
 /// - `void AddTo(digest) const`, and for values `static void AddTo(digest, values)`: all that a picture depends on.
 /// - `static bool HasHoles(values)`: whether any place within the field has no value.

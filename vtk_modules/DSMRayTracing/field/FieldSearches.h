@@ -2,7 +2,7 @@
 #ifndef rt_FieldSearches_h
 #define rt_FieldSearches_h
 
-// What searches and samples the fields of AnyField: included where tracers are made for a store.
+// Includes the searches and samplers of the fields of AnyField, for the files that make tracers for a store.
 #include "DSMRayTracing/field/lattice/LatticeSearches.h"
 #include "DSMRayTracing/field/levels/LevelSearches.h"
 

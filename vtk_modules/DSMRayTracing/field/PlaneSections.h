@@ -38,7 +38,7 @@ struct SectionBeam final : ObjectBeam
   std::vector<dsm::BlockId> Bricks; ///< plane by plane, from the nearest one
 
   bool MayMeet() const override { return !this->IsKnown || !this->Bricks.empty(); }
-  /// Tells that a ray has come to a brick.
+  /// Called when a ray has come to a brick.
   void Reach(dsm::BlockId brick)
   {
     const auto begin = this->Bricks.begin() + static_cast<std::ptrdiff_t>(this->Reached);

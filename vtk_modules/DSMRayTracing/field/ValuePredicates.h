@@ -12,8 +12,8 @@
 namespace rt
 {
 
-/// Returns whether one of some isovalues may be within a range of values: what walks over macrocells (BeamDescent, BrickWalk),
-/// hierarchies of boxes (ChildrenInRange) and segments (FieldSegment) ask for isosurfaces.
+/// Returns whether one of some isovalues may be within a range of values: what walks over macrocells (BeamDescent,
+/// BrickWalk), hierarchies of boxes (ChildrenInRange) and segments (FieldSegment) ask for isosurfaces.
 class IsovaluePredicate
 {
 public:

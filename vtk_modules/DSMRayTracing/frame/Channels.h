@@ -72,7 +72,7 @@ struct Channels
     visitIf(ChannelSet::Object, first.Object, std::size_t(1), std::int32_t(-1), others.Object...);
   }
 
-  /// So many empty pixels with those channels.
+  /// Makes `pixels` empty pixels with these channels.
   void Reset(ChannelSet channels, std::size_t pixels)
   {
     *this = {};

@@ -17,8 +17,8 @@
 namespace rt
 {
 
-/// Reads what is published, on whichever rank and in whichever store it is. For the thread that FrameRenderer::Read calls with
-/// one; waits for bricks.
+/// Reads what is published, on whichever rank and in whichever store it is. For the thread that FrameRenderer::Read
+/// calls with one; waits for bricks.
 class FieldReader
 {
 public:
@@ -38,8 +38,8 @@ public:
     const std::vector<dsm::BlockId>& ids,
     dsm::FunctionRef<void(dsm::BlockId, const Brick&)> visit) = 0;
 
-  /// How fast values grow at points in the field's world space, on each axis of its own space (FindSmoothGradients of its
-  /// Sampler); 0 where there are none.
+  /// How fast values grow at points in the field's world space, on each axis of its own space (FindSmoothGradients
+  /// of its Sampler); 0 where there are none.
   virtual std::vector<glm::dvec3> FindGradients(
     const AnyField& field, const std::vector<glm::dvec3>& points) = 0;
 

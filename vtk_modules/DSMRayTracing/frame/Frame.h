@@ -70,7 +70,7 @@ struct Frame
   std::shared_ptr<const BeamHistory> Beams;
   /// Reports of all ranks, in rank order; see FrameRenderer::Records.
   std::vector<std::vector<std::byte>> Reports;
-  /// That threads had nothing to trace, before this rank's last tile was done; summed over them.
+  /// Time in which threads had nothing to trace before this rank's last tile was done, summed over the threads.
   std::uint64_t IdleNanoseconds = 0;
 };
 

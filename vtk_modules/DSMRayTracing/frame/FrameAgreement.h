@@ -15,11 +15,11 @@
 namespace rt
 {
 
-/// How the ranks of a frame come to its common end: each reports to rank 0 that its workers are
-/// through, and how it fared; when all have, rank 0 tells all, along a tree, what they have reported. When one fails, rank 0 tells the others
-/// at once, since they may be waiting for what that rank will never send. Rank 0 may also abort the
-/// frame, which is no failure: all ranks finish what they have begun. A rank without memory tells, and
-/// hears, the same (Messenger::Insist). Communication thread only.
+/// How the ranks of a frame come to its common end. Each reports to rank 0 that its workers are done, and the
+/// result. When all have, rank 0 sends all reports to all ranks, along a tree. When one fails, rank 0 notifies the
+/// others at once, since they may be waiting for messages that the rank will never send. Rank 0 may also abort the
+/// frame, which does not count as a failure: all ranks finish what they have begun. A rank without memory sends and
+/// receives the same (Messenger::Insist). Communication thread only.
 class FrameAgreement
 {
 public:
@@ -42,8 +42,8 @@ public:
 
   /// Returns whether all ranks have stopped.
   bool IsOver() const { return this->Over; }
-  /// The frame's outcome, the same on every rank; valid once it is over. What fails when the last rank
-  /// is done counts no more.
+  /// The frame's outcome, the same on every rank; valid once it is over. Failures after the last rank is done do
+  /// not count.
   const dsm::Status& GetOutcome() const { return this->Outcome; }
   /// Returns, likewise, whether the frame was aborted.
   bool IsAborted() const { return this->Aborted; }

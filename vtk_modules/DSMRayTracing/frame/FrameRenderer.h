@@ -24,27 +24,26 @@ namespace rt
 
 class TileSource;
 
-/// Traces frames: the workers trace tiles while the calling thread, which alone may call MPI,
-/// carries their requests for bricks and tiles and serves the other ranks (the paper's
-/// communication thread, section 3). After its last tile a rank goes on serving until all have
-/// finished.
+/// Traces frames: the workers trace tiles while the calling thread, which alone may call MPI, carries their
+/// requests for bricks and tiles and serves the other ranks (the paper's communication thread, section 3). After
+/// its last tile a rank continues to serve until all have finished.
 class FrameRenderer
 {
 public:
   explicit FrameRenderer(dsm::Messenger& messenger);
   ~FrameRenderer();
 
-  /// The ranks exchange two records for a frame: what they bring to it before, and how it went after. What else they
-  /// have to tell one another may go with these.
+  /// The ranks exchange two records for a frame: their entries before it, and its results after it. Callers may add
+  /// their own data to these.
   struct Records
   {
     /// Entries of all ranks, in rank order, if they have been exchanged already: FrameEntry::Create
     /// for the frame's content, or for the part of it that is not agreed otherwise. Empty: the
     /// renderer gathers them.
     std::vector<FrameEntry> Entries;
-    /// Local: called when this rank has traced its part of the frame, before the ranks agree on how it went. What it returns
-    /// comes to all ranks (Frame::Reports); what it throws is the frame's failure. Not always called when the frame is
-    /// aborted, or fails.
+    /// Local: called when this rank has traced its part of the frame, before the ranks agree on how it went. Its
+    /// result comes to all ranks (Frame::Reports); its exception is the frame's failure. It is not always called if
+    /// the frame is aborted or fails.
     dsm::FunctionRef<std::vector<std::byte>(const Frame&)> Report;
   };
 
@@ -58,15 +57,16 @@ public:
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     const Frame* last = nullptr, const Records& records = {});
 
-  /// Adds the request's samples to a frame that has all samples before them: each rank goes on with
-  /// the tiles that it has, and their channels. Collective; as Render, but that a failure leaves the frame without tiles.
-  /// A frame that was aborted while it got samples has to get the same ones again, before others:
-  /// then only tiles that lack them are traced.
+  /// Adds the request's samples to a frame that has all samples before them: each rank continues with the tiles
+  /// that it has, and their channels. Collective; as Render, but that a failure leaves the frame without tiles. A
+  /// frame that was aborted while it got samples has to get the same ones again, before others: then only tiles
+  /// that lack them are traced.
   void Refine(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame,
     const Records& records = {});
 
-  /// Collective, between frames; settles the store first. Calls `read` on one thread of this rank, while all ranks serve one
-  /// another. What it throws on any rank is thrown as the same dsm::Error on every rank; `what` begins its text.
+  /// Collective, between frames; settles the store first. Calls `read` on one thread of this rank, while all ranks
+  /// serve one another. If it throws on any rank, every rank throws the same dsm::Error, whose text begins with
+  /// `what`.
   void Read(const char* what, dsm::BlockStore& store, dsm::FunctionRef<void(FieldReader&)> read);
 
   /// Sets a function that rank 0's calling thread calls repeatedly during a frame. `part`: the approximate

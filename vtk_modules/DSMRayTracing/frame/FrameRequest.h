@@ -37,11 +37,12 @@ struct FrameRequest
   /// counts as part of it. More than one where something else is to be drawn between them.
   static constexpr int MaxLayers = 8;
   int Layers = 1;
-  /// Window depth, in [0, 1], at which the rays of each pixel end, row by row from the bottom: where something opaque is
-  /// that is not in the scene. Null: nowhere.
+  /// Window depth, in [0, 1], at which the rays of each pixel end, row by row from the bottom: where something
+  /// opaque is that is not in the scene. Null: nowhere.
   std::shared_ptr<const std::vector<float>> Limits;
-  /// Window depths at which media are cut into layers: where something translucent is that is not in the scene. As many
-  /// pictures of Width x Height, one after the other, as there are in any pixel; from front to back, then 1. Null: nowhere.
+  /// Window depths at which media are cut into layers: where something translucent is that is not in the scene. As
+  /// many pictures of Width x Height, one after the other, as there are in any pixel; from front to back, then 1.
+  /// Null: nowhere.
   std::shared_ptr<const std::vector<float>> MediumCuts;
   /// Channels of each pixel of the image.
   ChannelSet Channels;

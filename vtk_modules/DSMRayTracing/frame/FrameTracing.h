@@ -63,8 +63,8 @@ public:
   {
   }
 
-  /// Traces tiles until all ranks have stopped, and ends the store's frame. Throws only when a rank is lost, and with it all
-  /// that is collective. `makePlan` may fail.
+  /// Traces tiles until all ranks have stopped, and ends the store's frame. Throws only when a rank is lost, and
+  /// with it all that is collective. `makePlan` may fail.
   void Trace(dsm::FunctionRef<TilePlan()> makePlan)
   {
     this->Run(this->Workers, [&] { this->Prepare(makePlan); });

@@ -49,8 +49,8 @@ private:
   /// Finds what arrives at the places with that number.
   void Look(int number, const Ray* rays, RayMask wanted, LightPath* const* paths,
     std::vector<Places>& places) const;
-  /// Sends a ray from each of them: `aim(ray, path, normal)` says where to and how far, `take(place, transmittance)` is
-  /// told what gets along it.
+  /// Sends a ray from each of them: `aim(ray, path, normal)` says where to and how far, `take(place,
+  /// transmittance)` gets the transmittance along it.
   template <class Aim, class Take>
   void Send(int number, const Ray* rays, RayMask wanted, LightPath* const* paths,
     std::vector<Places>& places, const Aim& aim, const Take& take) const;

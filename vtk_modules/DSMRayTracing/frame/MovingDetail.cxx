@@ -9,7 +9,7 @@ namespace rt
 namespace
 {
 
-/// That a try may take, beyond what a picture takes that waits for nothing.
+/// Time that a try may take in addition to that of a picture that waits for nothing.
 constexpr double WaitingSeconds = 0.05;
 /// From one look at the store's counters to the next.
 constexpr std::chrono::milliseconds LookInterval(2);

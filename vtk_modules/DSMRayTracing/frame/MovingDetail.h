@@ -10,11 +10,11 @@
 namespace rt
 {
 
-/// Which level of detail a picture in passing is traced at, where data in files have coarser ones. The finest is tried
-/// first, and given up when it waits for bricks for longer than a moving camera allows; what it has read until then
-/// stays in memory, so that by and by it gets through. In its place stands the level that got through the last time; or,
-/// every other time, when that one had all of its bricks, the next finer one is tried instead. Local; but the ranks come
-/// to the same by what they agree on.
+/// Chooses the level of detail of pictures while the camera moves, if data in files have coarser ones. The finest
+/// level is tried first, and given up when it waits for bricks for longer than a moving camera allows. Bricks that
+/// it has read until then stay in memory, so a later try gets through. The level that got through the last time
+/// takes its place; if that one had all of its bricks, the next finer one is tried every other time. Local, but all
+/// ranks choose the same, because they use only numbers that they have agreed on.
 class MovingDetail
 {
 public:

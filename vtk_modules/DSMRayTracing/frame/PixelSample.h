@@ -38,10 +38,10 @@ struct PixelSample
   float LayerDepths[MaxLayers];
   glm::vec4 LayerColors[MaxLayers];
 
-  /// Surfaces must be added front to back. If all layers are full, two neighbors become one: those that change least what
-  /// is drawn between them. The one that contributes less moves to the depth of the other (as nodes
-  /// of the visibility function in Salvi, Montgomery, Lefohn, Adaptive Transparency, 2011). `isMedium`: a surface behind
-  /// it that is better seen gives the sample its depth.
+  /// Surfaces must be added front to back. If all layers are full, two neighbors become one: those that change
+  /// least what is drawn between them. The one that contributes less moves to the depth of the other (as nodes of
+  /// the visibility function in Salvi, Montgomery, Lefohn, Adaptive Transparency, 2011). `isMedium`: a surface
+  /// behind it that is better seen gives the sample its depth.
   void AddLayer(const glm::vec4& color, float depth, bool isMedium = false)
   {
     const bool isNearest = this->Layers == 0;

@@ -71,7 +71,7 @@ private:
   void AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths,
     RayMask cut, MediumLight& light) const;
 
-  /// Adds what the surfaces at which paths are contribute.
+  /// Adds the light from the surfaces that the paths have reached.
   void AddSurfaces(LightPath* const* paths, int count, int bounces) const;
 
   /// `shared`: see PixelSample; written only in previews.

@@ -46,8 +46,8 @@ protected:
   }
   virtual ~ServedWork() = default;
 
-  /// Works until all ranks have stopped, and ends the store's frame. Throws only when a rank is lost, and with it all that
-  /// is collective. `prepare` may fail.
+  /// Works until all ranks have stopped, and ends the store's frame. Throws only when a rank is lost, and with it
+  /// all that is collective. `prepare` may fail.
   void Run(int workers, dsm::FunctionRef<void()> prepare)
   {
     try
@@ -110,8 +110,8 @@ protected:
   virtual void Cancel() {}
   /// The communication thread, often, as Messenger::ProgressUntil says. May fail.
   virtual bool ServeMore() { return false; }
-  /// The communication thread, when this rank's workers have stopped, whatever has failed. Returns bytes for all ranks; may
-  /// fail.
+  /// The communication thread, when this rank's workers have stopped, whatever has failed. Returns bytes for all
+  /// ranks; may fail.
   virtual std::vector<std::byte> Collect() { return {}; }
   /// The communication thread, before the frame ends.
   virtual void End() {}

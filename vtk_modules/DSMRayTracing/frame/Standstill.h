@@ -10,7 +10,7 @@
 namespace rt
 {
 
-/// Tells when a rank's workers have neither computed nor got a brick for too long. One thread.
+/// Detects that a rank's workers have neither computed nor received a brick for too long. One thread.
 class Standstill
 {
 public:
@@ -19,7 +19,8 @@ public:
     : Limit(limit)
   {
   }
-  /// `getWork`: processor time and bytes so far, of which any growth is a sign of life. To be called often.
+  /// `getWork`: processor time and bytes so far, any growth of which shows that the workers are alive. To be called
+  /// often.
   template <class GetWork>
   bool IsOver(const GetWork& getWork)
   {

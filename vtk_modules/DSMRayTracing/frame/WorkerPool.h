@@ -29,10 +29,10 @@ public:
   /// Any thread: how many are still at work. One that is not may be calling `finished` yet.
   int GetRunning() const;
 
-  /// That the threads have computed so far, in all runs. The thread that calls Start.
+  /// Returns the processor time of the threads so far, in all runs. For the thread that calls Start.
   double GetProcessorSeconds();
 
-  /// Until all are through with `finished`, too: then nothing of the run is used any more.
+  /// Waits until all have returned from `finished`, too: then nothing of the run is used any more.
   void Wait();
 
 private:

@@ -25,8 +25,8 @@ struct Environment
     return glm::mix(
       glm::dvec3(this->Lower), glm::dvec3(this->Upper), 0.5 + 0.5 * glm::dot(from, this->Up));
   }
-  /// That all directions over a surface with this unit normal send it, weighted by the cosine, were
-  /// nothing in between.
+  /// Returns the unoccluded irradiance of a surface with this unit normal, divided by pi: the mean light over the
+  /// hemisphere, weighted by the cosine.
   glm::dvec3 GetLightOnto(const glm::dvec3& normal) const
   {
     // The weighted mean of the directions is two thirds of the normal.

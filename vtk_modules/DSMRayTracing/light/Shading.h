@@ -28,8 +28,8 @@ struct Incidence
 /// World space.
 Incidence GetIncidence(const Light& light, const glm::dvec3& point);
 
-/// Returns a unit direction from the point to the light or, where lights have a radius (LightTransport::LightRadius), to a
-/// random place on it.
+/// Returns a unit direction from the point to the light or, where lights have a radius
+/// (LightTransport::LightRadius), to a random place on it.
 glm::dvec3 AimAt(const Incidence& incidence, double lightRadius, SampleSequence& random);
 
 /// A point of a surface, and from where it is looked at. World space; vectors are unit.

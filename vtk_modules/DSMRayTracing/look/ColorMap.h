@@ -57,8 +57,8 @@ struct ColorMap
   glm::vec4 Map(double value) const;
   /// The value to which an entry of the table belongs; or that of a place between two entries.
   double GetValue(double entry) const;
-  /// The table shows no value up to this one, or, `fromAbove`, no value down to it; infinite where it shows all, or none.
-  /// Below and Above are to be as the first and the last entry.
+  /// The table shows no value up to this one, or, `fromAbove`, no value down to it; infinite where it shows all, or
+  /// none. Below and Above are to be as the first and the last entry.
   double FindUnseenEnd(bool fromAbove) const;
   /// Returns whether no color of the map lets light through.
   bool IsOpaque() const;

@@ -14,7 +14,7 @@
 namespace rt
 {
 
-/// What a function of values has at one of them: red, green, blue, and opacity or extinction (w).
+/// The look that a function of values has at one of them: red, green, blue, and opacity or extinction (w).
 struct FunctionSample
 {
   double Value;

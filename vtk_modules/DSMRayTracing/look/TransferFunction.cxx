@@ -27,8 +27,7 @@ TransferFunction::Behavior GetLarger(
     std::max(one.Tinge, other.Tinge) };
 }
 
-/// What is seen of a short way for its length: of two extinctions with which a cell is opaque, one is
-/// as good as the other.
+/// The visible emission of a short way, over its length: two extinctions with which a cell is opaque look alike.
 glm::dvec4 GetSeen(const glm::dvec4& emission, double cellLength)
 {
   const double depth = emission.w * cellLength;
@@ -40,7 +39,7 @@ double GetLargest(const glm::dvec4& numbers)
   return std::max({ numbers.x, numbers.y, numbers.z, numbers.w });
 }
 
-/// What a way with such a look adds to a ray: its emission, and its extinction.
+/// Emission and extinction of a way with such a look.
 glm::dvec4 ToEmission(const glm::dvec4& look)
 {
   return glm::dvec4(glm::dvec3(look) * look.w, look.w);

@@ -106,7 +106,7 @@ private:
     double Place;
     glm::dvec4 Look;
   };
-  /// What a whole bin has: the mean of emission and extinction, and changes as Behavior has them.
+  /// Properties of an entire bin: the mean of emission and extinction, and changes as in Behavior.
   struct Whole
   {
     glm::dvec4 Slope{ 0.0 };

@@ -15,10 +15,10 @@
 namespace rt
 {
 
-/// How much of a place in a triangle, in [0, 1], the lines along its sides cover that `edgeFlags`
-/// says are edges (AllEdges). A line is `width` pixels of the picture wide, a half of it in the
-/// triangle, and falls off within a pixel; VTK's shader does the same. As there, a line goes on
-/// beyond the ends of its side, as far as the triangle does.
+/// How much of a place in a triangle, in [0, 1], the lines along its sides cover that `edgeFlags` says are edges
+/// (AllEdges). A line is `width` pixels of the picture wide, a half of it in the triangle, and falls off within a
+/// pixel; VTK's shader does the same. As there, a line extends beyond the ends of its side, as far as the triangle
+/// does.
 ///
 /// `worldToPixels`: of a PictureView; corners may lie behind the camera. Pure.
 inline double GetEdgeCover(const glm::dvec3& position, const glm::dvec3 corners[3],

@@ -22,9 +22,9 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// MeshInstance::GetMeshRay for the rays of a packet: the same operations in the same order. What
-/// makes it return false there leaves a ray out here, and so does a number that is not finite, with
-/// which a ray hits nothing. FloatTag: vectors of floats; doubles have as many lanes as fit.
+/// MeshInstance::GetMeshRay for the rays of a packet: the same operations in the same order. A ray for which that
+/// returns false is left out here, and so is one with a number that is not finite, since it hits nothing. FloatTag:
+/// vectors of floats; doubles have as many lanes as fit.
 template <class FloatTag>
 class MeshPacketSetup
 {

@@ -26,9 +26,9 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// TraverseWideBvh for a packet: a node is visited once for all rays that meet its box before they
-/// end. D: vectors of rays. A walk of its own: functions for an instruction set cannot be inlined into that template, which
-/// is compiled for every processor.
+/// TraverseWideBvh for a packet: a node is visited once for all rays that meet its box before they end. D: vectors
+/// of rays. A walk of its own: functions for an instruction set cannot be inlined into that template, which is
+/// compiled for every processor.
 template <class D>
 class MeshPacketWalk
 {
@@ -142,7 +142,7 @@ private:
     }
   }
 
-  /// Those of `rays` that have not ended where they enter.
+  /// Returns the subset of `rays` that have not ended where they enter.
   HWY_INLINE Mask FindOpen(const float* enter, Mask rays) const
   {
     const D tag;

@@ -13,8 +13,8 @@
 namespace rt
 {
 
-/// The nearest hit of a ray among the triangles that were tried. What is found in the end does not
-/// depend on the order in which they were; see ComesFirst.
+/// The nearest hit of a ray among the triangles that were tried. The final hit does not depend on their order; see
+/// ComesFirst.
 struct NearestTriangle
 {
   TriangleHit Hit;

@@ -31,15 +31,14 @@ struct FilterRay
   }
 };
 
-/// Tells of four triangles which of them a ray certainly misses; IntersectTriangle decides on the
-/// others. It is the same test in single precision, with room for its errors, so it never drops a
-/// triangle that is hit. `Axis` is the one along which the ray moves most. Made once for all rays
-/// that come to the triangles.
+/// Finds out which of four triangles a ray certainly misses; IntersectTriangle decides on the others. It is the
+/// same test in single precision, with room for its errors, so it never drops a triangle that is hit. `Axis` is the
+/// one along which the ray moves most. Made once for all rays that come to the triangles.
 ///
-/// Errors: with d the uncertainty of a coordinate relative to the ray, and e the largest extent of
-/// a triangle, the corners of a triangle that is hit lie within 2 e of the ray, and each is known to
-/// within 2 d after the shear. An edge function, a difference of two products, is then off by at
-/// most 16 d e + 8 d^2 plus the rounding of the products, 16 e^2 2^-24.
+/// Errors: d is the uncertainty of a coordinate relative to the ray, and e the largest extent of a triangle. The
+/// corners of a triangle that is hit lie within 2 e of the ray, and each is known to within 2 d after the shear. An
+/// edge function, a difference of two products, is then off by at most 16 d e + 8 d^2 plus the rounding of the
+/// products, 16 e^2 2^-24.
 template <int Axis>
 class TriangleFilter
 {

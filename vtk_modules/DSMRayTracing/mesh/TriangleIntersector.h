@@ -8,12 +8,11 @@
 namespace rt
 {
 
-/// The watertight test of Woop, Benthin and Wald (JCGT 2013), all in double precision: a ray does
-/// not pass between triangles that share an edge or a corner bit for bit, since a corner is moved to
-/// the ray's space by itself and the sign of an edge is the same for both triangles. Where rounding
-/// makes an edge function zero the edge counts as hit from both sides, so the paper's second try in
-/// higher precision is not needed: its errors would be holes, ours is a hit that is off by less
-/// than the rounding of a coordinate.
+/// The watertight test of Woop, Benthin and Wald (JCGT 2013), all in double precision. A ray does not pass between
+/// triangles that share an edge or a corner bit for bit: a corner is moved to the ray's space by itself, and the
+/// sign of an edge is the same for both triangles. Where rounding makes an edge function zero the edge counts as
+/// hit from both sides, so the paper's second try in higher precision is not needed: its errors would be holes,
+/// ours is a hit that is off by less than the rounding of a coordinate.
 ///
 /// False for triangles without area as seen along the ray. Not for hits before ray.Min or behind
 /// ray.Max. Fills in all of the hit but Triangle.

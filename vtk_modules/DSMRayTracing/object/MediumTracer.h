@@ -34,8 +34,8 @@ public:
   /// see it.
   virtual bool DimsLamps() const { return true; }
 
-  /// Media of the same group, if it is not 0, are looks of one: where several are, what they emit adds up, and their depth is
-  /// the mean of their depths, weighted by these.
+  /// Media of the same group, if it is not 0, are looks of one: where several are, what they emit adds up, and
+  /// their depth is the mean of their depths, weighted by these.
   virtual int GetGroup() const { return 0; }
 
   /// Returns whether pieces have to be kept, and described.
@@ -46,10 +46,11 @@ public:
   virtual bool IsLit() const { return false; }
   virtual bool HasLateExtinction() const { return false; }
   ///@}
-  /// Length up to which pieces may be joined before they are described, in the space of the medium (MediumLight::SetSpace).
+  /// Length up to which pieces may be joined before they are described, in the space of the medium
+  /// (MediumLight::SetSpace).
   virtual double GetJoinedLength() const { return 0.0; }
-  /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on. Where density is known only
-  /// then, drops the pieces behind the place where a ray is dark.
+  /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on. Where density is known
+  /// only then, drops the pieces behind the place where a ray is dark.
   virtual void Describe(const Ray* /*rays*/, RayMask /*wanted*/, MediumLight&) const {}
 };
 

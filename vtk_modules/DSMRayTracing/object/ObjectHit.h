@@ -13,8 +13,8 @@ namespace rt
 
 class ObjectTracer;
 
-/// The nearest hit of a ray so far among the objects that were asked. What is known of it stands in a
-/// slot of a fixed size, which only the object that was hit can read. Without value until Clear.
+/// The nearest hit of a ray so far among the objects that were asked. Its data stand in a slot of a fixed size,
+/// which only the object that was hit can read. Without value until Clear.
 class ObjectHit
 {
 public:
@@ -23,9 +23,9 @@ public:
   /// Null where nothing was hit.
   const ObjectTracer* GetObject() const { return this->Tracer; }
 
-  /// Takes a hit of an object at `t` if it is nearer than the one so far; the ray ends there then. So of hits
-  /// that are equally near that of the object that was asked first counts. Returns where the object has to
-  /// say all of it; null: it is no nearer. (Filled in place: a copy would wait for what was just written.)
+  /// Takes a hit of an object at `t` if it is nearer than the one so far; the ray ends there then. So of hits that
+  /// are equally near that of the object that was asked first counts. Returns where the object has to write its
+  /// data; null if it is not nearer. (Filled in place: a copy would wait for what was just written.)
   template <class Hit>
   Hit* Open(const ObjectTracer& object, double t, Ray& ray)
   {

@@ -42,8 +42,8 @@ public:
   /// the rays within; null: rays go where they like.
   virtual void FindNext(Ray* rays, RayMask wanted, ObjectBeam* beam, ObjectHit* nearest) const = 0;
 
-  /// Those of the rays that are `wanted` which have any hit in [ray.Min, ray.Max]: for which FindNext
-  /// finds one.
+  /// Returns the subset of `wanted` rays that hit anything in [ray.Min, ray.Max]: FindNext finds a hit for each of
+  /// them.
   virtual RayMask FindOccluded(const Ray* rays, RayMask wanted) const = 0;
 
   /// Multiplies the transmittances of those of the rays that are `wanted` by GetSheetTransmittance of every
@@ -51,7 +51,7 @@ public:
   /// ends early. Unless overridden, finds the surfaces one after the other.
   virtual RayMask Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const;
 
-  /// Tells what those of the rays that are `wanted` meet, which all have hits of this object. All arrays are by ray.
+  /// Describes the surfaces that the `wanted` rays meet, which all have hits of this object. All arrays are by ray.
   /// `views`: the pictures that the rays belong to; null: they are rays of light, and no lines are drawn.
   virtual void Describe(const ObjectHit* hits, const Ray* rays, const PictureView* const* views,
     RayMask wanted, SurfacePoint* const* points) const = 0;

@@ -9,8 +9,9 @@
 namespace rt
 {
 
-/// For TraverseWideBvh over RangedBvhNode: those of the children that `Boxes` finds (ChildrenOnRay) whose range of values
-/// may hold what is looked for. `Predicate` tells that of a ValueRange, as IsovaluePredicate; kept by reference.
+/// For TraverseWideBvh over RangedBvhNode: those of the children that `Boxes` finds (ChildrenOnRay) whose range of
+/// values may hold what is looked for. `Predicate` decides that for a ValueRange, as IsovaluePredicate does; kept
+/// by reference.
 template <class Boxes, class Predicate>
 class ChildrenInRange
 {

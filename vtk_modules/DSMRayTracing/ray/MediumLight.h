@@ -28,8 +28,8 @@ struct MediumPiece
   double End;
   /// Red, green and blue that the medium emits there, and its optical depth.
   Lanes Amount;
-  /// Opacity that the piece adds to the ray if its medium is the only one. Until a piece of late extinction is described:
-  /// its own opacity, which is an upper bound.
+  /// Opacity that the piece adds to the ray if its medium is the only one. Until a piece of late extinction is
+  /// described: its own opacity, which is an upper bound.
   double Share = 0.0;
   /// Which light makes it shine; null: it shines by itself.
   const MediumLook* Look = nullptr;
@@ -111,7 +111,8 @@ public:
   }
 
   ///@{
-  /// The parts of Add, for those who know the transmittance of a piece, and the part of what it emits that gets out.
+  /// The parts of Add, for callers that have the transmittance of a piece already, and the share of its emission
+  /// that leaves it.
   void Keep(int ray, double begin, double end, const Lanes& amount, double passed)
   {
     std::vector<MediumPiece>& pieces = this->Pieces[ray];
@@ -149,7 +150,8 @@ public:
   /// Red, green and blue of the sum.
   Lanes& GetSum(int ray) { return this->Sum[ray]; }
 
-  /// T of the place that stands for all that a ray meets: where half of the light is gone; else, where there is anything.
+  /// T of the place that stands for all that a ray meets: where half of the light is gone; else, where there is
+  /// anything.
   double GetPlace(int ray) const
   {
     return std::isinf(this->Middle[ray]) ? this->First[ray] : this->Middle[ray];

@@ -47,7 +47,7 @@ inline void ForEachRay(RayMask rays, const Visit& visit)
   }
 }
 
-/// Those of the rays of which `is(ray)` is true.
+/// Returns the subset of the rays for which `is(ray)` is true.
 template <class Predicate>
 inline RayMask FindRays(RayMask rays, const Predicate& is)
 {

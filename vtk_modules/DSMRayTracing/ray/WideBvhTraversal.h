@@ -16,12 +16,13 @@ constexpr int LargestWideBvhDepth = 33;
 constexpr int LargestWideBvhStack =
   (bricks::WideBvhWidth - 1) * LargestWideBvhDepth + bricks::WideBvhWidth;
 
-/// Visits the leaves of a hierarchy that `wanted` tells of, nearest first: see ChildrenOnRay and ChildrenInRange. It has
-/// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for; `enter`
-///   tells where;
+/// Visits the leaves of a hierarchy that `wanted` selects, nearest first: see ChildrenOnRay and ChildrenInRange. It
+/// has
+/// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
+///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call but the
-/// leaf's.
+/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
+/// but the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {

@@ -13,8 +13,8 @@
 namespace rt
 {
 
-/// Takes rays through all media of a scene at once: of media that overlap, what they emit and absorb at a place adds up,
-/// in whatever order they are, but for media of a group (MediumTracer::GetGroup). One for each worker.
+/// Takes rays through all media of a scene at once: of media that overlap, what they emit and absorb at a place
+/// adds up, in whatever order they are, but for media of a group (MediumTracer::GetGroup). One for each worker.
 class MediaMarcher
 {
 public:
@@ -39,7 +39,8 @@ public:
     this->Merge(wanted, light);
   }
 
-  /// The brick that has a place's values (world space), of the first medium that is there; of no segment, where none is.
+  /// The brick that has a place's values (world space), of the first medium that is there; of no segment, where
+  /// none is.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
 
   /// Multiplies the transmittances of those of the rays that are `wanted` by that of all media.

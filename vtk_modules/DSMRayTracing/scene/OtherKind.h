@@ -12,8 +12,9 @@ class MediumTracer;
 class ObjectDigest;
 class ObjectTracer;
 
-/// An object or a medium of a kind that SceneObject or SceneMedium does not name, such as of a field that only tests have.
-/// CreateOtherObject and CreateOtherMedium (OtherKindDescription.h) make it. Its tracers derive from `TracerType`.
+/// An object or a medium of a kind that SceneObject or SceneMedium does not name, such as of a field that only
+/// tests have. CreateOtherObject and CreateOtherMedium (OtherKindDescription.h) make it. Its tracers derive from
+/// `TracerType`.
 template <class TracerType>
 class OtherKind
 {

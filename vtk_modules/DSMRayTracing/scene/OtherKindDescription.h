@@ -16,7 +16,7 @@
 namespace rt
 {
 
-/// What OtherKind holds: a description, and what makes its tracers for each store.
+/// Contents of OtherKind: a description, and functions that make its tracers for each store.
 template <class TracerType>
 class OtherKind<TracerType>::Description
 {

@@ -34,8 +34,8 @@ struct MediumKinds<std::variant<FieldTypes...>>
 /// - its Tracer, a MediumTracer for a store, in the same header.
 using SceneMedium = MediumKinds<AnyField>::Any;
 
-/// Returns whether a medium lies in layers along a ray, between which other things may be. The others show a single value of
-/// each ray.
+/// Returns whether a medium lies in layers along a ray, between which other things may be. The others show a single
+/// value of each ray.
 inline bool HasLayers(const SceneMedium& medium)
 {
   return std::visit([](const auto& kind) { return kind.IsLayered(); }, medium);

@@ -39,8 +39,8 @@ struct SceneTracers
   }
 };
 
-/// They keep references to everything. For the stores of dsm::BlockStore: each is compiled once, in a file of its own, since
-/// all kinds of objects and media are.
+/// They keep references to everything. For the stores of dsm::BlockStore: each is compiled once, in a file of its
+/// own, since all kinds of objects and media are.
 template <class Store>
 SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, const Scene& scene);
 

@@ -25,7 +25,7 @@ public:
   /// in `hits`. `beam`: of FindBeam, with all of the rays within; null: they go where they like.
   RayMask Find(Ray* rays, RayMask wanted, SceneBeam* beam, ObjectHit* hits) const;
 
-  /// Tells what those of the rays that are `wanted` meet, which Find has found something for. `views`, `points`: see
+  /// Describes the surfaces that Find has found for the `wanted` rays. `views`, `points`: see
   /// ObjectTracer::Describe; each object is asked for all of its hits together.
   static void Describe(const ObjectHit* hits, const Ray* rays, const PictureView* const* views,
     RayMask wanted, SurfacePoint* const* points);

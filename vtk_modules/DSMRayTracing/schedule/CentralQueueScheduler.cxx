@@ -15,7 +15,7 @@ struct TileRequest
   std::int32_t Count;
 };
 
-/// Tiles [First, First + Count); none means that the frame has no more.
+/// Tiles [First, First + Count); none: the frame has no further tiles.
 struct TileGrant
 {
   std::int32_t First;

@@ -18,8 +18,8 @@
 namespace rt
 {
 
-/// Planes through a field as an object that rays meet. Bricks are read only where they decide whether a plane is there, or
-/// color it.
+/// Planes through a field as an object that rays meet. Bricks are read only where they decide whether a plane is
+/// there, or color it.
 template <class FieldType, class Store>
 class SliceTracer final : public ObjectTracer
 {
@@ -162,7 +162,7 @@ private:
     return found;
   }
 
-  /// Those of the hits where the plane is there.
+  /// Returns the subset of the hits where the field has a value, and one that is to be shown; sets their places.
   RayMask FindShown(Hit* hits, RayMask wanted) const
   {
     Place places[MaxRays];

@@ -10,9 +10,9 @@
 namespace rt
 {
 
-/// Finds the colors that `values` give, by a look, to those of a batch of places that are `wanted`; where the field has no
-/// data, the color of what is not a number. `sampler`: reads values of the kind of field (LatticeSampler). `isNearest`: no
-/// values between samples.
+/// Finds the colors that `values` give, by a look, to those of a batch of places that are `wanted`; where the field
+/// has no data, the color of what is not a number. `sampler`: reads values of the kind of field (LatticeSampler).
+/// `isNearest`: no values between samples.
 template <class Sampler, class Values, class Place>
 void FindValueColors(const Sampler& sampler, const Values& values, const IsosurfaceLook& look,
   bool isNearest, const Place* places, RayMask wanted, glm::vec4* colors)

@@ -9,8 +9,8 @@
 namespace vol
 {
 
-/// Parses a file's text. A member of the outermost object that is called `skipped` is left out. Throws dsm::Error, which
-/// begins with "it", when the text is not valid JSON, or is deeper or has more values than FileLimits allows.
+/// Parses a file's text. A member of the outermost object that is called `skipped` is left out. Throws dsm::Error,
+/// which begins with "it", when the text is not valid JSON, or is deeper or has more values than FileLimits allows.
 nlohmann::json ParseJson(const std::string& text, const char* skipped = "");
 
 } // namespace vol

@@ -7,8 +7,8 @@
 namespace vol
 {
 
-/// The user's folder for results that are kept: "dsm-ray-tracer" in $XDG_CACHE_HOME or ~/.cache, which may not exist yet.
-/// Empty: there is none.
+/// The user's folder for results that are kept: "dsm-ray-tracer" in $XDG_CACHE_HOME or ~/.cache, which may not
+/// exist yet. Empty: there is none.
 std::filesystem::path GetCacheFolder();
 
 } // namespace vol

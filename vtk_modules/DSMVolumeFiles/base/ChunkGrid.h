@@ -58,7 +58,7 @@ struct ChunkGrid
     const bricks::Index3 first = chunk * this->ChunkSamples;
     return { first, glm::min(first + this->ChunkSamples, this->Samples) };
   }
-  /// And the first samples of its upper neighbors along each axis: what a brick that begins with it has.
+  /// The chunk with the first samples of its upper neighbors along each axis: what a brick that begins with it has.
   bricks::Box GetBoxWithHalo(const bricks::Index3& chunk) const
   {
     const bricks::Index3 first = chunk * this->ChunkSamples;

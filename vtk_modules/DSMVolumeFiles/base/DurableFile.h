@@ -8,7 +8,7 @@
 namespace vol
 {
 
-/// Writes files as a whole, to the disk. Refuses pipes, devices and folders, and never waits for one.
+/// Writes entire files, to the disk. Refuses pipes, devices and folders, and never waits for one.
 namespace DurableFile
 {
 
@@ -23,8 +23,8 @@ std::string WriteBeside(const std::string& beginning, const void* bytes, std::si
 /// Waits until a file's content is on the disk. Throws dsm::Error.
 void Synchronize(const std::string& path);
 
-/// Renames a file that is on the disk, replaces a file of the new name, and waits until the folder is on the disk. After a
-/// power failure there is either the old file or the new one. Throws dsm::Error.
+/// Renames a file that is on the disk, replaces a file of the new name, and waits until the folder is on the disk.
+/// After a power failure there is either the old file or the new one. Throws dsm::Error.
 void Rename(const std::string& from, const std::string& to);
 
 } // namespace DurableFile

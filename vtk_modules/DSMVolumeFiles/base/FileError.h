@@ -18,9 +18,9 @@ public:
   struct Place
   {
     std::string Path;
-    std::string Array; ///< empty: the file as a whole
+    std::string Array; ///< empty: the entire file
     std::optional<bricks::Index3>
-      Chunk; ///< in chunks from the array's first; none: the array as a whole
+      Chunk; ///< in chunks from the array's first; none: the entire array
   };
 
   /// `what`: the rest of the sentence that begins with the place, such as "is empty."

@@ -26,7 +26,7 @@ namespace
 constexpr std::uint64_t LargestGap = 8192;
 constexpr std::uint64_t MostTogether = std::uint64_t(1) << 20;
 
-/// A smaller file is soon in memory as a whole.
+/// A smaller file is soon in memory entirely.
 constexpr std::uint64_t SmallestWithReadAhead = std::uint64_t(64) << 20;
 
 /// Size of a disk read for scattered pieces, in bytes: smaller reads are hardly faster.

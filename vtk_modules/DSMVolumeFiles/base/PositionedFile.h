@@ -28,7 +28,7 @@ public:
   /// Differs, for all practical purposes, when another file is there, or this one was written to: of
   /// inode, size and time of change, when it was opened. The same on all hosts that share a file system.
   std::uint64_t GetStamp() const { return this->Stamp; }
-  /// That of what is at a path now; 0: there is nothing.
+  /// Returns the stamp of the file that is at a path now; 0 if there is none.
   static std::uint64_t FindStampOf(const std::string& path);
   /// Returns whether the file is unchanged since it was opened.
   bool IsUnchanged() const;

@@ -22,7 +22,7 @@ std::string ReadText(const PositionedFile& file, std::size_t bytes)
     throw FileError(file.GetPath(), "cannot be read: it is a directory.");
   }
   std::string text(bytes, '\0');
-  // Whoever uses a kept file touches it, while others read it.
+  // A process that uses a kept file changes its time, while others read it.
   file.ReadUnchecked(0, reinterpret_cast<std::byte*>(text.data()), text.size());
   return text;
 }

@@ -32,8 +32,8 @@ std::string ReadWhole(const std::string& path, std::size_t most);
 /// Returns whether a name from a file leads nowhere else when it is put behind a folder.
 bool IsPlainName(const std::string& name);
 
-/// Returns the first of some names in quotation marks, as the end of a sentence. `notes`: one for each name, in parentheses
-/// behind it; or none.
+/// Returns the first of some names in quotation marks, as the end of a sentence. `notes`: one for each name, in
+/// parentheses behind it; or none.
 std::string ListNames(
   const std::vector<std::string>& names, const std::vector<std::string>& notes = {});
 

@@ -35,7 +35,7 @@ public:
   /// Returns the cache that all files of the process share.
   static ChunkCache& GetShared();
 
-  /// From now on. What is in use stays in memory until it is not.
+  /// Applies from now on. Chunks in use stay in memory until they are released.
   void SetLimit(std::size_t bytes);
   std::size_t GetLimit() const;
   /// Returns the bytes that a cache needs so that consecutive boxes of so many samples along each axis do not read
@@ -52,7 +52,7 @@ public:
   /// Lets others have a part of the room, where chunks have to leave: false, and nothing is lent, if all that is
   /// would be more than the room divided by `divisor`.
   bool Lend(std::size_t bytes, std::size_t divisor);
-  /// So much of it is free again.
+  /// Returns room that Lend has given.
   void Return(std::size_t bytes);
   /// The file's chunks leave.
   void Forget(const VolumeFile& file);
@@ -70,7 +70,8 @@ public:
   /// The same for boxes far from one another: of chunks that are not here, no more is read than must be.
   void ReadScattered(const ArrayStep& of, const bricks::Box& box, std::byte* out);
 
-  /// The samples of boxes, likewise, each to its own place, by so many threads; each chunk is read once for all of them.
+  /// The samples of boxes, likewise, each to its own place, by so many threads; each chunk is read once for all of
+  /// them.
   void ReadBoxes(const ArrayStep& of, const std::vector<bricks::Box>& boxes,
     const std::vector<std::byte*>& outs, int threads);
 

@@ -24,8 +24,8 @@ namespace
 /// Divisor for the part of the cache's room that bricks read ahead may take.
 constexpr std::size_t RoomDivisor = 2;
 
-/// After a frame its picture is still drawn and delivered, and ParaView's processes talk to one another: on a host without
-/// spare cores, reading would keep them from it for longer than this.
+/// After a frame its picture is still drawn and delivered, and ParaView's processes talk to one another: on a host
+/// without spare cores, reading would keep them from it for longer than this.
 constexpr std::chrono::milliseconds Rest{ 30 };
 
 } // namespace

@@ -35,7 +35,8 @@ bool MayHaveHalo(const CodecStep& step)
   return step.What->AddHalo != nullptr;
 }
 
-/// As many bytes as a step makes at most of so many, which may not shrink unless it converts them; the greatest number where that is more.
+/// As many bytes as a step makes at most of so many, which may not shrink unless it converts them; the greatest
+/// number where that is more.
 std::uint64_t GetMost(const CodecStep& step, std::uint64_t bytes)
 {
   constexpr std::uint64_t header = 1024;

@@ -29,8 +29,8 @@ struct CodecStep
 class ChunkCodec
 {
 public:
-  /// Throws dsm::Error, without a name, when this build lacks a library that a step needs, when there are more steps
-  /// or compressors than FileLimits has, or when a step has no width.
+  /// Throws dsm::Error, without a name, when this build has no library for a step, when there are more steps or
+  /// compressors than FileLimits has, or when a step has no width.
   explicit ChunkCodec(std::vector<CodecStep> steps = {});
 
   /// Undoes the steps, the last one first, and writes so many bytes; `skipped` has a bit for each step that was

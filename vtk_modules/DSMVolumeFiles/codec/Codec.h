@@ -24,7 +24,7 @@ struct ElementType
   bool Swapped = false; ///< the other byte order than the machine's
 };
 
-/// What a codec must know to encode or decode a chunk. Plain.
+/// Parameters with which a codec encodes or decodes a chunk. Plain.
 struct CodecParameters
 {
   std::size_t Width = 1; ///< bytes of an element
@@ -46,7 +46,7 @@ struct Codec
   std::vector<std::string_view> ZarrNames = {};
   std::vector<int> HdfFilters = {}; ///< HDF5's numbers of it
 
-  /// Package to install if this build lacks the library; empty if it has the library.
+  /// Package to install if this build does not have the library; else empty.
   std::string_view LackingPackage = {};
 
   bool IsCompressor = false;
@@ -60,13 +60,13 @@ struct Codec
   bool KeepsPlaces = false;
 
   /// Returns the parameters that Zarr's metadata have. `configuration`: in version 2 the object with the "id";
-  /// `decoded`: the type of the array where the metadata do not name one. Throws dsm::Error, which names the member that
-  /// is invalid. Null: it has none.
+  /// `decoded`: the type of the array where the metadata do not name one. Throws dsm::Error, which names the member
+  /// that is invalid. Null: it has none.
   CodecParameters (*ParseZarr)(
     const nlohmann::json& configuration, const ElementType& decoded) = nullptr;
   /// Returns at most `most` bytes. Throws dsm::Error, which begins with "its", when the bytes are damaged.
   ByteBuffer (*Decode)(ByteBuffer stored, const CodecParameters& with, std::size_t most) = nullptr;
-  /// Null: it is only read.
+  /// Null for a codec that can only decode.
   ByteBuffer (*Encode)(ByteBuffer samples, const CodecParameters& with) = nullptr;
 
   /// Adds the encoded halo behind an encoded chunk, where other programs do not look. Null: there is no such place.
@@ -84,7 +84,7 @@ struct Codec
 VOL_CODECS(VOL_DECLARE_CODEC)
 #undef VOL_DECLARE_CODEC
 
-/// All codecs, those included that this build lacks a library for.
+/// All codecs, including those for which this build has no library.
 const std::vector<Codec>& GetCodecs();
 // These return null where there is none.
 const Codec* FindCodec(std::string_view name);

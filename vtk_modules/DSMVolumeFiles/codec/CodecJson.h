@@ -10,11 +10,12 @@
 #include <optional>
 #include <string>
 
-/// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec 'x' ".
+/// Members of what Zarr's metadata say of a codec. Errors are dsm::Error, name the member, and continue "its codec
+/// 'x' ".
 namespace vol::CodecJson
 {
 
-/// Returns a member of an object; null where there is none, or what should have it is no object.
+/// Returns a member of an object; null if it is missing, or `object` is not an object.
 const nlohmann::json& Find(const nlohmann::json& configuration, const char* name);
 
 /// Returns the type that NumPy ("<f4") or Zarr 3 ("float32") calls so; nothing for those that bricks::ScalarType does

@@ -57,7 +57,8 @@ To Cast(From value)
   }
 }
 
-/// `makeConvert(encoded, decoded)` gets a value of either type, and returns a function that decodes one after the other.
+/// `makeConvert(encoded, decoded)` gets a value of either type, and returns a function that decodes one after the
+/// other.
 template <class MakeConvert>
 ByteBuffer DecodeEach(const ByteBuffer& stored, const CodecParameters& with, std::size_t most,
   const MakeConvert& makeConvert)
@@ -173,7 +174,7 @@ Codec MakeNumberCodec(std::string_view name, std::vector<std::string_view> zarrN
 
 } // namespace
 
-/// Numbers of another type. What "quantize" has rounded stays so.
+/// Numbers of another type. Numbers that "quantize" has rounded stay so.
 Codec MakeAsTypeCodec()
 {
   Codec codec = MakeNumberCodec("astype", { "astype", "quantize" });

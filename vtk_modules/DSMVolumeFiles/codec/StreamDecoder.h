@@ -44,7 +44,7 @@ public:
 
   /// Upper bound for the ratio of unpacked to packed bytes.
   static std::uint64_t GetMostGrowth(StreamEncoding encoding);
-  /// Throws dsm::Error when this build lacks the library, and std::bad_alloc.
+  /// Throws dsm::Error when this build does not have the library, and std::bad_alloc.
   static std::unique_ptr<StreamDecoder> Make(StreamEncoding encoding);
 
 protected:

@@ -17,8 +17,8 @@ namespace vol
 namespace
 {
 
-/// Returns the meters of a unit of length, by its name in UDUNITS-2, which OME-Zarr and CF use. Returns nothing if the unit
-/// is not a length.
+/// Returns the meters of a unit of length, by its name in UDUNITS-2, which OME-Zarr and CF use. Returns nothing if
+/// the unit is not a length.
 std::optional<double> FindMeters(const std::string& unit)
 {
   static const std::map<std::string, double> units = { { "angstrom", 1e-10 }, { "\u00c5", 1e-10 },

@@ -29,7 +29,8 @@ struct ChunkStorage
   /// Chunks at the volume's ends are as large as all others; else they end with it.
   bool HasWholeChunks = true;
   SpaceOrder Order = FastestX; ///< of the samples of a chunk
-  /// All samples of a component follow one another in a chunk that is shown as several; else the components of a sample do.
+  /// All samples of a component follow one another in a chunk that is shown as several; else the components of a
+  /// sample do.
   bool ComponentsApart = false;
   /// As many boxes of samples are in one piece of stored bytes, one behind the other: a chunk of an array with
   /// more axes than three.
@@ -40,9 +41,10 @@ struct ChunkStorage
   std::size_t HaloRecordBytes = 0;
 };
 
-/// So many samples, of so many bytes, as boxes of at most 1 MiB: what is near in space is in few of them.
+/// Cuts `samples` of so many bytes each into boxes of at most 1 MiB: samples that are close in space are in few of
+/// them.
 ChunkGrid CutIntoBoxes(const bricks::Index3& samples, std::size_t sampleBytes);
-/// As rows that follow one another, or planes when a plane is small.
+/// Cuts them into rows that follow one another, or planes if a plane is small.
 ChunkGrid CutIntoRows(const bricks::Index3& samples, std::size_t sampleBytes);
 
 /// Divides each chunk into several of neighboring rows, if the chunks that a brick lies in are large

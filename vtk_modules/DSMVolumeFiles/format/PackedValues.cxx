@@ -20,7 +20,7 @@ namespace
 
 using Type = bricks::ScalarType;
 
-/// Exact, also for numbers below the least normal one, infinity and NaN.
+/// Exact, also for numbers below the smallest normal one, infinity and NaN.
 float FromHalf(std::uint16_t half)
 {
   // The exponent's bias is 15 in a half and 127 in a float.

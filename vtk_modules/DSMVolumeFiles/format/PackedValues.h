@@ -29,9 +29,8 @@ public:
 
   /// Numbers of an attribute; none where it does not exist, or has no numbers.
   using GetNumbers = std::function<std::vector<double>(const char* name)>;
-  /// Takes scale_factor, add_offset, _FillValue and missing_value, valid_range or else valid_min
-  /// and valid_max, and _Unsigned. What cannot be honored becomes a sentence in `warnings`.
-  /// `array`: its name.
+  /// Takes scale_factor, add_offset, _FillValue and missing_value, valid_range or else valid_min and valid_max, and
+  /// _Unsigned. Adds a sentence to `warnings` for each attribute that cannot be honored. `array`: its name.
   void TakeAttributes(const GetNumbers& getNumbers, bool isUnsigned, const std::string& array,
     std::vector<std::string>& warnings);
 
@@ -40,7 +39,7 @@ public:
   bool AreHalves() const { return this->IsHalf; }
   /// Type of the numbers: of halves UInt16, as the machine has none.
   bricks::ScalarType GetStored() const { return this->Stored; }
-  /// Type of the values. Of integers it is Float32 where that distinguishes all of them, else Float64.
+  /// Type of the values. For integers it is Float32 if that distinguishes all of them, else Float64.
   bricks::ScalarType GetType() const;
   /// Which of the values are data. Where values are packed, those that are not are NaN.
   bricks::ValidValues GetValid() const;

@@ -74,7 +74,7 @@ private:
   bricks::Index3 FindStored(std::size_t array, const bricks::Index3& chunk) const;
   /// The samples of a chunk of the file, those beyond the volume's ends included where it has them.
   bricks::Box GetStoredBox(std::size_t array, const bricks::Index3& whole) const;
-  /// The rows of a part of a chunk of the file; none where that can only be read as a whole.
+  /// The rows of a part of a chunk of the file; none if the chunk can only be read entirely.
   std::vector<ByteSource::Piece> FindPieces(std::size_t array, const Place& place,
     const bricks::Index3& whole, const bricks::Box& part) const;
   /// Reads pieces that have so many bytes in total.

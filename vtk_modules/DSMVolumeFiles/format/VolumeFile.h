@@ -40,9 +40,9 @@ struct FileArray
 /// For messages: along x, y and z.
 std::string DescribeShape(const bricks::Index3& samples);
 
-/// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than FileLimits has, or
-/// a name that is too long: a header may declare anything. To be called before anything is computed with its sizes.
-/// `slices`: boxes of samples in what is stored as one chunk.
+/// Throws dsm::Error, which names the file, where an array or its chunks have no samples, or more than FileLimits
+/// has, or a name that is too long: a header may declare anything. To be called before anything is computed with
+/// its sizes. `slices`: boxes of samples in what is stored as one chunk.
 void CheckSizes(const std::string& path, const FileArray& array, std::size_t slices = 1);
 
 /// Placement of the samples in world space, as in vtkImageData. Plain.
@@ -59,12 +59,12 @@ struct FileGeometry
 /// positions has those of origin and spacing.
 using GridCoordinates = std::array<std::vector<double>, 3>;
 
-/// Returns whether two places are one, but for what numbers in texts are rounded: by less than a thousandth of a sample, at
-/// any sample.
+/// Returns whether two places are one, but for what numbers in texts are rounded: by less than a thousandth of a
+/// sample, at any sample.
 bool IsSamePlace(const FileGeometry& a, const FileGeometry& b);
 
-/// Throws dsm::Error, which names the file, where a number is not finite, or a distance zero, or where the directions of the axes lie in one
-/// plane: no world position would have an index.
+/// Throws dsm::Error, which names the file, where a number is not finite, or a distance zero, or where the
+/// directions of the axes lie in one plane: no world position would have an index.
 void CheckGeometry(const std::string& path, const FileGeometry& geometry);
 
 struct OpenOptions;
@@ -107,8 +107,8 @@ public:
   virtual StepOrigin GetOrigin(int step) const { return { this->Path, this->Stamp, step }; }
   /// Number of levels of detail, of which one was opened.
   int GetLevels() const { return this->Levels; }
-  /// What the file says and is not honored, each a sentence after the file's name that names the attribute, such as
-  /// "has 'scanner' as its space, which is taken for left-posterior-superior.".
+  /// Attributes of the file that are not honored: for each a sentence after the file's name, such as "has 'scanner'
+  /// as its space, which is taken for left-posterior-superior.".
   const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
   /// Differs, for all practical purposes, when the file's contents do.
   std::uint64_t GetStamp() const { return this->Stamp; }

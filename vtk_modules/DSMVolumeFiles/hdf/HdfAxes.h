@@ -29,8 +29,8 @@ struct HdfAxes
 {
   std::vector<hsize_t> Lengths;
   std::optional<std::size_t> Time; ///< which one
-  /// Which ones are in space, the slowest first. Where there are two, the first is none: it would
-  /// have one sample.
+  /// The axes in space, the slowest first. If there are only two, the first of the three is empty: it would have
+  /// one sample.
   std::array<std::optional<std::size_t>, 3> Space;
   SpaceOrder Order = FastestX; ///< of these
   std::optional<std::size_t> Component;
@@ -51,8 +51,8 @@ struct HdfAxes
     Still,   ///< of four axes the last one has components
     InTime   ///< the first one is time
   };
-  /// `notes`: what is known of the axes, or none. Returns false for what is no volume. `tooLong`: set to what an axis of a
-  /// volume has more of than FileLimits allow, such as "time steps"; then it returns false, too.
+  /// `notes`: what is known of the axes, or none. Returns false if the dataset is not a volume. `tooLong`: set to
+  /// what an axis of a volume has more of than FileLimits allow, such as "time steps"; then it returns false, too.
   bool Find(const std::vector<hsize_t>& shape, Kind kind, const AxisNotes& notes,
     std::string* tooLong = nullptr);
 

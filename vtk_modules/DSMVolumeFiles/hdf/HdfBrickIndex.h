@@ -10,8 +10,8 @@
 namespace vol
 {
 
-/// The group in which a brick file (BrickFileWriter) has more of an array than its values; not open where there is none.
-/// `root`: of the file, or of a coarser level. The caller has GetHdfLock, here and below.
+/// The group in which a brick file (BrickFileWriter) has more of an array than its values; not open where there is
+/// none. `root`: of the file, or of a coarser level. The caller has GetHdfLock, here and below.
 HdfHandle OpenHdfBrickIndex(hid_t root, const FileArray& array);
 
 /// Reads the index from that group. Returns an empty index if there is none, or if a part is too large for a file

@@ -21,11 +21,12 @@ struct HdfChunk
 };
 
 /// Reads the index in which an HDF5 file keeps where a dataset's chunks are, of each kind that its library writes
-/// ("HDF5 File Format Specification", III.A.1 and III.A.2, and appendix C; version 3). The library itself (1.10, 1.12) goes
-/// through the whole index for each chunk that it is asked for, which takes hours where there are a million.
+/// ("HDF5 File Format Specification", III.A.1 and III.A.2, and appendix C; version 3). The library itself (1.10,
+/// 1.12) goes through the whole index for each chunk that it is asked for, which takes hours where there are a
+/// million.
 ///
-/// Nothing of the file is trusted: no byte is read twice, so that nodes that lead to one another end; every block has to
-/// have its signature, version, size and, in the newer kinds, its checksum.
+/// Nothing of the file is trusted: no byte is read twice, so that nodes that lead to one another end; every block
+/// has to have its signature, version, size and, in the newer kinds, its checksum.
 class HdfChunkIndex
 {
 public:
@@ -38,7 +39,7 @@ public:
   static bool Read(const PositionedFile& file, const HdfChunkLayout& layout,
     const std::vector<std::uint64_t>& most, const Visit& visit);
 
-  // What the readers of all kinds share: blocks of the file, entries for chunks, and the order of numbered chunks.
+  // Functions that readers of all kinds share: blocks of the file, entries for chunks, and the order of numbered chunks.
   std::size_t GetAxes() const { return this->Most.size(); }
 
   /// As HdfBytes has them; nothing where more is read altogether than the file has.
@@ -59,7 +60,7 @@ public:
   /// `entryBytes` is 8 for chunks that are not filtered.
   static bool IsEntry(bool isFiltered, std::uint64_t entryBytes);
   HdfChunk GetChunk(const HdfBytes& block, std::size_t place, std::size_t entryBytes) const;
-  /// So many entries of numbered chunks, from `number` on.
+  /// Adds `count` entries of numbered chunks, from `number` on.
   bool AddEntries(const HdfBytes& block, std::size_t place, std::size_t entryBytes,
     std::uint64_t number, std::uint64_t count);
   /// Likewise, in pages of so many entries from an address on, each with a checksum. `isThere(page)`: whether it was

@@ -33,8 +33,8 @@ struct HdfChunkLayout
   std::uint64_t SingleBytes = 0;    ///< so many bytes,
   std::uint32_t SingleSkippedFilters = 0; ///< without these filters (bits)
 
-  /// `header`: place of the dataset's object header. Returns nothing where the header is damaged, or has another layout.
-  /// Throws dsm::Error when the file cannot be read.
+  /// `header`: place of the dataset's object header. Returns nothing where the header is damaged, or has another
+  /// layout. Throws dsm::Error when the file cannot be read.
   static std::optional<HdfChunkLayout> Find(const PositionedFile& file, std::uint64_t header);
 };
 

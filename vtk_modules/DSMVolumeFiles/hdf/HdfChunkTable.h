@@ -22,7 +22,7 @@ public:
   void Add(std::uint64_t number, const HdfChunk& chunk);
   /// After the last one was added. Returns false where a chunk was added twice.
   bool Sort();
-  /// Null where the chunk is not there. Any thread.
+  /// Null if the chunk is missing. Any thread.
   const HdfChunk* Find(std::uint64_t number) const;
 
   std::size_t GetCount() const { return this->Entries.size(); }

@@ -16,9 +16,9 @@
 namespace vol
 {
 
-/// The samples along each axis of a dataset's chunks, slowest axis first. Throws dsm::Error, which names the file and the
-/// dataset, where the chunks have another number of axes than the dataset, which makes the library write beyond what it
-/// is given, or where they have no samples. The caller has GetHdfLock, here and below.
+/// The samples along each axis of a dataset's chunks, slowest axis first. Throws dsm::Error, which names the file
+/// and the dataset, if the chunks have no samples, or more or fewer axes than the dataset: then the library would
+/// write outside of the given memory. The caller has GetHdfLock, here and below.
 std::vector<hsize_t> GetHdfChunkEdges(
   hid_t dataset, const std::string& path, const std::string& name);
 

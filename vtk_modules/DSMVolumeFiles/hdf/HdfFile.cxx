@@ -57,7 +57,7 @@ public:
     {
       throw FileError(path, this->Unread.empty() ? "has no " + this->Missing : this->Unread);
     }
-    this->GoesOn = nullptr; // whoever opens the file may be gone later
+    this->GoesOn = nullptr; // the caller may be gone later
     // Results kept for one level must not be used for another.
     std::uint64_t stamp = this->Bytes->GetStamp() + static_cast<std::uint64_t>(level);
     for (const ChunkStorage& storage : this->Storages)
@@ -143,7 +143,7 @@ protected:
     const HdfDataset& dataset = this->GetDataset(array, step);
     if (dataset.ReadByLibrary)
     {
-      return std::nullopt; // nobody else knows
+      return std::nullopt; // only the library knows
     }
     const ChunkGrid grid = this->GetStoredGrid(array);
     const HdfAxes& axes = dataset.Shape;
@@ -209,7 +209,7 @@ private:
     this->File.Reset();
   }
 
-  /// Whether another program appends to the file, or did until it was killed: the superblock says so.
+  /// Returns whether another program appends to the file, or did until it was killed: the superblock says so.
   static bool IsLive(const PositionedFile& bytes)
   {
     constexpr std::size_t version = 8;

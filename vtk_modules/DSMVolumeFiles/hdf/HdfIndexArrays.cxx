@@ -58,7 +58,7 @@ public:
       return this->IsRight;
     }
     const int superBlocks = 1 + static_cast<int>(this->CountBits) - GetLog2(this->LeastEntries);
-    // Those of the first ones have no block of their own: the index leads to their data blocks.
+    // The first super blocks are not stored: the index leads to their data blocks.
     const int direct = std::min(superBlocks, 2 * GetLog2(this->LeastPointers));
     const std::uint64_t pointers = 2 * (this->LeastPointers - 1);
     const std::size_t entries = PrefixBytes + this->InIndex * this->EntryBytes;

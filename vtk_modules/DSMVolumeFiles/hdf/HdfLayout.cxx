@@ -78,8 +78,8 @@ void FindHalo(hid_t root, const FileArray& array, ChunkStorage& storage)
   }
 }
 
-/// False when the chunks do not have all components, or are not where the library says, or as the
-/// filters say, or have samples in another order than bricks.
+/// False when the chunks do not have all components, or are not where the library says, or as the filters say, or
+/// if the order of their samples differs from that of bricks.
 bool FindChunks(const HdfLayout::Place& place, const std::vector<hsize_t>& edges, hid_t properties,
   const FileArray& array, ChunkStorage& storage, HdfDataset& dataset, bool swapped)
 {

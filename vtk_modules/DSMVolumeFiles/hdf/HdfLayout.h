@@ -51,7 +51,7 @@ struct HdfLayout
   HdfDataset Origin;
   std::vector<CodecStep> Steps; ///< that made the bytes of its chunks
 
-  /// What the datasets of a file have in common.
+  /// Data that the datasets of a file have in common.
   struct Place
   {
     const std::string& Path;

@@ -28,7 +28,8 @@ struct Visit
   std::uint64_t Objects = 0;
 };
 
-/// Keeps a name that is `wanted`; a positive number ends the visit. The library calls it, and lets no exception through.
+/// Keeps a name that is `wanted`; a positive number ends the visit. The library calls it, and lets no exception
+/// through.
 herr_t Note(const char* name, bool wanted, void* data)
 {
   auto& visit = *static_cast<Visit*>(data);

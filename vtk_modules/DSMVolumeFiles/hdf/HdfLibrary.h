@@ -25,10 +25,10 @@ constexpr char HdfHalo[] = "HaloSamples";
 /// Attribute of the group that has all of that for the points, and of VTK's group of their values: the name of the
 /// array that are their scalars.
 constexpr char HdfScalars[] = "Scalars";
-/// And of chunks that are not compressed: HaloRecord of each.
+/// Dataset of the halos of chunks that are not compressed: a HaloRecord of each.
 constexpr char HdfHaloRecords[] = "Halos";
 
-/// To be held by who calls the library, which may have been built without a lock of its own.
+/// Callers of the library must hold it: the library may have been built without a lock of its own.
 std::mutex& GetHdfLock();
 
 /// The library's name of the machine's own form of a type.
@@ -38,8 +38,8 @@ hid_t GetHdfType(bricks::ScalarType type);
 /// (1.10) does not check this, and converts with memory outside of the number. Under the lock.
 bool IsHdfNumber(hid_t type);
 
-/// The names of what may be datasets, in all groups of a file, and behind external links. `areAll`: set to false where an
-/// object cannot be read, so that others may not be found. Under the lock.
+/// The names of what may be datasets, in all groups of a file, and behind external links. `areAll`: set to false
+/// where an object cannot be read, so that others may not be found. Under the lock.
 std::vector<std::string> FindHdfDatasets(hid_t file, bool* areAll = nullptr);
 
 /// After the library's first use: from then on the end of the process is noticed.
@@ -87,9 +87,9 @@ private:
   Closer Close = nullptr;
 };
 
-/// All of a dataset, whose numbers become those of `type`. Returns false, and `out` is empty, where it has more than `most`
-/// numbers, which are not read. Empty where there is no such dataset, too, or it has no numbers, or it cannot be read. Under
-/// the lock.
+/// All of a dataset, whose numbers become those of `type`. Returns false, and `out` is empty, where it has more
+/// than `most` numbers, which are not read. Empty where there is no such dataset, too, or it has no numbers, or it
+/// cannot be read. Under the lock.
 template <class T>
 bool ReadHdfWhole(
   hid_t group, const char* name, hid_t type, std::uint64_t most, std::vector<T>& out)
@@ -160,18 +160,18 @@ bool ReadHdfAttribute(hid_t object, const char* name, hid_t type, T* out, hssize
     H5Aread(attribute.Id.Get(), type, out) >= 0;
 }
 
-/// An attribute's numbers; none where there is no such attribute, or it has more than the axes of a dataset, or others than
-/// numbers. Under the lock.
+/// An attribute's numbers; none where there is no such attribute, or it has more than the axes of a dataset, or
+/// others than numbers. Under the lock.
 std::vector<double> ReadHdfNumbers(hid_t object, const char* name);
 
-/// An attribute's text; empty where there is no such attribute, or it is no text. Under the lock.
+/// An attribute's text; empty if the attribute is missing or is not a text. Under the lock.
 std::string ReadHdfText(hid_t object, const char* name);
-/// An attribute's texts; none where there is no such attribute, or it has more than the axes of a dataset, or no texts. Under
-/// the lock.
+/// An attribute's texts; none where there is no such attribute, or it has more than the axes of a dataset, or no
+/// texts. Under the lock.
 std::vector<std::string> ReadHdfTexts(hid_t object, const char* name);
 
-/// Paths of the dimension scales of a dataset of so many axes, the first one of each axis; empty of an axis that has none.
-/// None where the dataset has no list of scales. Under the lock.
+/// Paths of the dimension scales of a dataset of so many axes, the first one of each axis; empty of an axis that
+/// has none. None where the dataset has no list of scales. Under the lock.
 std::vector<std::string> FindHdfScales(hid_t file, hid_t dataset, std::size_t axes);
 
 /// Suppresses the library's own error output; this code reports the errors.

@@ -47,7 +47,7 @@ std::vector<double> ReadCoordinates(hid_t group, const char* name, hsize_t lengt
   return numbers.size() == length ? numbers : std::vector<double>();
 }
 
-/// Of a dataset that is a mesh's record, or a component of one.
+/// Reads the notes of a dataset that is a mesh's record, or a component of one.
 AxisNotes ReadOpenPmd(
   hid_t file, hid_t dataset, const std::vector<hsize_t>& shape, std::vector<std::string>& warnings)
 {
@@ -98,7 +98,7 @@ AxisNotes ReadOpenPmd(
   return notes;
 }
 
-/// Of the dataset "data" in a group that has a dataset of coordinates for each axis.
+/// Reads the notes of the dataset "data" in a group that has a dataset of coordinates for each axis.
 AxisNotes ReadEmd(hid_t file, hid_t dataset, const std::vector<hsize_t>& shape)
 {
   AxisNotes notes;

@@ -11,9 +11,9 @@
 namespace vol
 {
 
-/// What a file says of a dataset's axes: openPMD (1.0 and 1.1, meshes), EMD (dim1, dim2 ...), dimension scales (netCDF-4,
-/// HDF5 Dimension Scale Specification), or attributes that have a voxel's size. Empty where it says nothing. What is not
-/// honored becomes a sentence in `warnings`. The caller has GetHdfLock.
+/// Reads a file's notes on a dataset's axes: openPMD (1.0 and 1.1, meshes), EMD (dim1, dim2 ...), dimension scales
+/// (netCDF-4, HDF5 Dimension Scale Specification), or attributes that have a voxel's size. Empty if there are none.
+/// Adds a sentence to `warnings` for each note that is not honored. The caller has GetHdfLock.
 AxisNotes ReadHdfNotes(hid_t file, hid_t dataset, std::vector<std::string>& warnings);
 
 } // namespace vol

@@ -12,8 +12,8 @@
 namespace vol
 {
 
-/// A dataset, which may be behind external links: a linked file that is a pipe or a device is not opened. Not open where
-/// it cannot be opened. Under GetHdfLock.
+/// A dataset, which may be behind external links: a linked file that is a pipe or a device is not opened. Not open
+/// where it cannot be opened. Under GetHdfLock.
 HdfHandle OpenHdfDataset(hid_t group, const std::string& name);
 /// Likewise, an object of any kind, such as a group behind an external link.
 HdfHandle OpenHdfObject(hid_t group, const std::string& name);
@@ -23,13 +23,13 @@ HdfHandle OpenHdfObject(hid_t group, const std::string& name);
 class HdfOrigins
 {
 public:
-  /// Those of a dataset that was opened by `file`, which is at `path`; returns whether there are any, or its values are put
-  /// together of others'. Throws dsm::Error, which names what is missing: the library would give fill values. Under
-  /// GetHdfLock.
+  /// Adds the files of a dataset that was opened by `file`, which is at `path`. Returns whether there are any, or
+  /// the dataset takes its values from other datasets. Throws dsm::Error, which names what is missing: the library
+  /// would give fill values. Under GetHdfLock.
   bool Add(const std::string& path, hid_t file, hid_t dataset);
 
   std::vector<std::string> GetPaths() const;
-  /// `own`, where there are none; else it differs when one of them does, too.
+  /// Returns `own`, combined with the stamps of the source files if there are any.
   std::uint64_t GetStamp(std::uint64_t own) const;
   /// Throws dsm::Error when one was written to since it was added. Any thread.
   void CheckUnchanged() const;

@@ -45,7 +45,7 @@ struct OtherDatasets
       count, "'" + name + "' (" + DescribeHdfShape(shape) + (areNamed ? "; " + names : "") + ")");
     ++this->CountOfNumbers;
   }
-  /// What is wrong with the file; empty: nothing.
+  /// The fault of the file; empty: it has none.
   std::string DescribeDamage() const
   {
     const std::string closed = this->Closed.empty()

@@ -37,8 +37,8 @@ struct HdfVolumes
   std::vector<std::string> Warnings; ///< as VolumeFile has them
   std::string Missing; ///< what there must be, where none is found, as the end of a sentence
 
-  /// `wanted`: the path of a dataset; empty: all are looked at. Throws dsm::Error, which names the file, where an axis is too
-  /// long. The caller has GetHdfLock.
+  /// `wanted`: the path of a dataset; empty: all are looked at. Throws dsm::Error, which names the file, where an
+  /// axis is too long. The caller has GetHdfLock.
   static HdfVolumes Find(hid_t file, const std::string& path, const std::string& wanted);
 };
 

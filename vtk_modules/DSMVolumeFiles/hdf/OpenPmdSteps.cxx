@@ -63,8 +63,7 @@ std::vector<double> ReadTimes(hid_t file, const std::map<std::uint64_t, std::str
   return FindTimes(note, static_cast<int>(iterations.size()), warnings);
 }
 
-/// What has time steps of its own, and another number of them than there are iterations, cannot be
-/// shown beside these.
+/// Volumes with time steps of their own cannot be shown beside the iterations if the numbers of both differ.
 void LeaveOutOthersInTime(std::size_t iterations, HdfVolumes& volumes)
 {
   const auto first = std::stable_partition(volumes.Found.begin(), volumes.Found.end(),

@@ -38,9 +38,9 @@ struct BareValues
   std::vector<std::string> Warnings; ///< VolumeFile::GetWarnings
 };
 
-/// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at
-/// most 1 MiB. Compressed values are unpacked once (UnpackOnce), unless OpenOptions::OnlyHeader is set. Throws dsm::Error
-/// when a file cannot be opened or is too short.
+/// A volume of bare values, as a header elsewhere describes it. Its chunks are boxes of at most 1 MiB. Compressed
+/// values are unpacked once (UnpackOnce), unless OpenOptions::OnlyHeader is set. Throws dsm::Error when a file
+/// cannot be opened or is too short.
 std::shared_ptr<VolumeFile> OpenBareFile(const std::string& path, const BareValues& values,
   const FileGeometry& geometry, const OpenOptions& options);
 

@@ -10,9 +10,10 @@
 namespace vol
 {
 
-/// Teem's NRRD (https://teem.sourceforge.net/nrrd/format.html), versions 1 to 5, encodings raw, gzip and bzip2: values
-/// behind the header or in one or several other files; three axes, or four of which the first or last one has the components.
-/// World space is left-posterior-superior where `space` is one of the anatomical spaces, else as it is.
+/// Teem's NRRD (https://teem.sourceforge.net/nrrd/format.html), versions 1 to 5, encodings raw, gzip and bzip2:
+/// values behind the header or in one or several other files; three axes, or four of which the first or last one
+/// has the components. World space is left-posterior-superior where `space` is one of the anatomical spaces, else
+/// as it is.
 std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions& options);
 
 /// ITK's MetaImage (.mhd, .mha) of three dimensions, compressed or not, in one or several files.

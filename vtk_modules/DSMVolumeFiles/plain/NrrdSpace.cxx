@@ -40,7 +40,7 @@ void LocateByAxis(
   }
 }
 
-/// What turns a world of `space` to left-posterior-superior, as ITK and Slicer do: signs of the world's axes.
+/// Signs of the world's axes that turn a world of `space` to left-posterior-superior, as ITK and Slicer do.
 struct Signs
 {
   double Of[3] = { 1.0, 1.0, 1.0 };

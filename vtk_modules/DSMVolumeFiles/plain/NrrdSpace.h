@@ -17,9 +17,9 @@ namespace vol
 std::vector<std::vector<double>> ParseNrrdVectors(
   const HeaderText& header, const std::string& name);
 
-/// Places the samples of a NRRD file in the world: left-posterior-superior where `space` is one of the anatomical spaces,
-/// else as it is. `domain`: which of the file's axes are x, y and z of the samples. Adds to `warnings` where the space is
-/// not honored. Throws dsm::Error.
+/// Places the samples of a NRRD file in the world: left-posterior-superior where `space` is one of the anatomical
+/// spaces, else as it is. `domain`: which of the file's axes are x, y and z of the samples. Adds to `warnings`
+/// where the space is not honored. Throws dsm::Error.
 FileGeometry PlaceNrrd(const HeaderText& header, const std::vector<std::size_t>& domain,
   const bricks::Index3& samples, std::vector<std::string>& warnings);
 

@@ -27,13 +27,13 @@ struct CompressedValues
   std::int64_t Skip = 0;
 };
 
-/// Returns a file in the cache folder (GetCacheFolder) that has these values, part behind part, for reading in parts.
-/// Unpacks them to it, unless that has been done and the packed files are unchanged: of several processes one does so
-/// while others wait. A copy takes at most half of what is free on the disk; older copies are removed for it, which
-/// whoever has open keeps. Memory: about 2 MiB. `goesOn`: as OpenOptions::GoesOn.
+/// Returns a file in the cache folder (GetCacheFolder) that has these values, part behind part, for reading in
+/// parts. Unpacks them to it, unless that has been done and the packed files are unchanged: of several processes
+/// one does so while others wait. A copy takes at most half of what is free on the disk; older copies are removed
+/// for it, and processes that have them open keep them. Memory: about 2 MiB. `goesOn`: as OpenOptions::GoesOn.
 ///
-/// Throws dsm::Error, which names the file, where the unpacked bytes are not as many as expected or damaged, or there is
-/// no room.
+/// Throws dsm::Error, which names the file, where the unpacked bytes are not as many as expected or damaged, or
+/// there is no room.
 ValuePart UnpackOnce(const CompressedValues& packed, const std::function<bool()>& goesOn);
 
 } // namespace vol

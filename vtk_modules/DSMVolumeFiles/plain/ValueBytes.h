@@ -29,8 +29,8 @@ struct ValuePart
 class ValueBytes final : public ByteSource
 {
 public:
-  /// `path`: for messages; `partBytes`: bytes of each part, which the files were found to have. Throws dsm::Error when the first file cannot be
-  /// opened, or is another one now.
+  /// `path`: for messages; `partBytes`: bytes of each part, which the files were found to have. Throws dsm::Error
+  /// when the first file cannot be opened, or is another one now.
   ValueBytes(std::string path, std::vector<ValuePart> parts, std::uint64_t partBytes);
 
   const std::string& GetPath() const override { return this->Path; }

@@ -15,8 +15,8 @@
 namespace vol
 {
 
-/// A copy of values in the cache folder, while it is written: beside its place, locked, and removed unless it is finished.
-/// Only the user may read it.
+/// A copy of values in the cache folder, while it is written: beside its place, locked, and removed unless it is
+/// finished. Only the user may read it.
 class ValueCopy
 {
 public:
@@ -24,8 +24,8 @@ public:
   static std::filesystem::path GetPath(const std::filesystem::path& folder, std::uint64_t hash);
   /// Returns the copy with so many bytes if it is complete, and notes that it was used.
   static std::optional<ValuePart> Find(const std::filesystem::path& copy, std::uint64_t bytes);
-  /// Removes copies, the least recently used first, until one of so many bytes takes at most half of what is free. Throws
-  /// dsm::Error, which names the file `path`, and removes none where that is not enough.
+  /// Removes copies, in the order of their last use, until one of so many bytes takes at most half of the free
+  /// room. Throws dsm::Error, which names the file `path`, and removes none if that is not enough.
   static void MakeRoom(
     const std::string& path, const std::filesystem::path& folder, std::uint64_t bytes);
 

@@ -82,7 +82,7 @@ std::optional<Pattern> ParsePattern(const std::string& text)
   return has ? std::optional<Pattern>(pattern) : std::nullopt;
 }
 
-/// What a field says that means several files.
+/// A field of a header that names several files.
 struct Several
 {
   std::optional<Pattern> Numbered; ///< none: a list follows

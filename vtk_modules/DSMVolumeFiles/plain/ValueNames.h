@@ -19,9 +19,9 @@ bool IsList(const std::string& place);
 /// - "LIST", where the names are in the header's next lines;
 /// - a pattern with a first and a last number, and a step unless that is 1 ("a%03d.raw 1 9 2"), unless a file is called
 ///   so. A percent sign without numbers behind the name is a part of the name.
-/// After either, "2" or "2D" says how many of the array's axes each file has; usually these are all but the last one.
-/// `sizes`: samples along the array's axes, the fastest first. Throws dsm::Error where the files are another number than
-/// the sizes ask for, or more than FileLimits::Sources.
+/// After either, "2" or "2D" says how many of the array's axes each file has; usually these are all but the last
+/// one. `sizes`: samples along the array's axes, the fastest first. Throws dsm::Error if the number of files
+/// differs from that of the sizes, or exceeds FileLimits::Sources.
 std::vector<std::string> FindValueFiles(const HeaderText& header, const std::string& name,
   HeaderLines& lines, const std::vector<std::int64_t>& sizes);
 

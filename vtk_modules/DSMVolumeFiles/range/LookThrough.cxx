@@ -116,7 +116,7 @@ std::optional<Look> LookThrough(const ArrayStep& of, const bricks::Box& box, int
   std::vector<ValueRanges> parts(static_cast<std::size_t>(threads), look.Ranges);
   std::atomic<std::size_t> done{ 0 };
   std::atomic<bool> stopped{ false };
-  constexpr std::size_t together = 64; // the caller is asked whether to go on once for so many
+  constexpr std::size_t together = 64; // the caller is asked whether to continue once for so many
   bricks::ParallelForChunks(threads, order.size(), together,
     [&](std::size_t begin, std::size_t end, std::size_t, int thread)
     {

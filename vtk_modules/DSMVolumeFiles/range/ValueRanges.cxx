@@ -258,7 +258,7 @@ std::optional<ValueRanges> FindRanges(const ArrayStep& of, const bricks::Box& bo
 namespace
 {
 
-/// Those of all of the array, if the file tells them.
+/// Returns the ranges of all of the array, if the file has them.
 std::optional<ValueRanges> ReadOwn(const ArrayStep& of)
 {
   ValueRanges ranges(of.Get().Components);

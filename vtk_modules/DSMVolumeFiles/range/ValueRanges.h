@@ -57,10 +57,10 @@ std::optional<ValueRanges> FindRanges(const ArrayStep& of, const bricks::Box& bo
   const std::function<bool(double)>& goesOn);
 
 /// Ranges that the file itself tells, which are those of all of the array, or that were found before, in the user's
-/// cache directory ($XDG_CACHE_HOME or ~/.cache): they are known as long as the file is what it was. `isShare`: the box
-/// is what a rank has of all of the array, whose ranges are those of all ranks' boxes together: then they may be those of
-/// more than the box, such as what was found with another number of ranks. Neither throws; what cannot be kept is found
-/// again.
+/// cache directory ($XDG_CACHE_HOME or ~/.cache): they are known as long as the file is what it was. `isShare`: the
+/// box is what a rank has of all of the array, whose ranges are those of all ranks' boxes together: then they may
+/// be those of more than the box, such as what was found with another number of ranks. Neither throws; what cannot
+/// be kept is found again.
 std::optional<ValueRanges> LoadRanges(const ArrayStep& of, const bricks::Box& box, bool isShare);
 void KeepRanges(const ArrayStep& of, const bricks::Box& box, const ValueRanges& ranges);
 

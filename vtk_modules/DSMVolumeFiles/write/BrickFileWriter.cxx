@@ -223,7 +223,7 @@ private:
     {
       this->AddLevel(level);
     }
-    // A later process must not go on with a file that has an index.
+    // A later process must not continue a file that has an index.
     this->WriteState(false);
     for (std::size_t number = 0; number < indices.size(); ++number)
     {
@@ -410,7 +410,7 @@ private:
       this->CreateHalos(number), 0, std::move(ranges) };
   }
 
-  /// Which integers are missing, as netCDF has it. Of floating point numbers they are NaN.
+  /// Writes which integers are missing, as netCDF has it. Missing floating point numbers are NaN.
   void WriteMissing(hid_t dataset, const FileArray& array)
   {
     bricks::Dispatch(array.Type,

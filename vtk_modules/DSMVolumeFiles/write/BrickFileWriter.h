@@ -30,11 +30,11 @@ struct BrickFileLayout
   std::vector<FileArray> Arrays;
   int BrickEdge = 16;
   Compression Pressed = Compression::None;
-  /// Whether uncompressed chunks also have a halo. A halo that lies behind its chunk is lost when the array is
+  /// If true, uncompressed chunks also have a halo. A halo that lies behind its chunk is lost when the array is
   /// copied to another file.
   bool HasHaloRecords = true;
 
-  /// Returns the codec for the chunks of an array. Throws dsm::Error when this build lacks the compression.
+  /// Returns the codec for the chunks of an array. Throws dsm::Error when this build does not have the compression.
   ChunkCodec CreateCodec(std::size_t array) const;
   /// Returns whether the chunks of an array, which begin bricks, have a halo (ChunkGrid::GetHalo), so that a brick
   /// is read in one piece.
@@ -82,8 +82,9 @@ public:
 
   /// When all chunks are there: PATH.part may be opened until Finish. Throws dsm::Error.
   virtual void Close() = 0;
-  /// After Close: adds what is known of the bricks of each array (bricks::VoxelIndex as it is kept; empty: nothing) and
-  /// the first coarser levels, which are brick files at PartFiles::GetLevel, and gives the file its name. Throws dsm::Error.
+  /// After Close: adds what is known of the bricks of each array (bricks::VoxelIndex as it is kept; empty: nothing)
+  /// and the first coarser levels, which are brick files at PartFiles::GetLevel, and gives the file its name.
+  /// Throws dsm::Error.
   virtual void Finish(const std::vector<std::vector<std::byte>>& indices, int levels) = 0;
 
 protected:

@@ -177,8 +177,8 @@ private:
   std::map<Key, ByteBuffer> Gathered; ///< boxes that were dealt last to this rank
 };
 
-/// By the name of another format programs would not open it; and when the names are given the wrong way round, what was to
-/// be read would be replaced.
+/// By the name of another format programs would not open it; and when the names are given the wrong way round, what
+/// was to be read would be replaced.
 void CheckName(const std::string& path)
 {
   const std::string extension = std::filesystem::path(path).extension().string();

@@ -104,7 +104,7 @@ void PartFiles::RemoveValues(const std::string& path)
     const std::string one = GetLevel(path, level);
     RemoveFile(GetPart(one));
     RemoveState(one);
-    RemoveFile(GetLock(one)); // nobody has it: the path's claim covers the levels
+    RemoveFile(GetLock(one)); // no process has it: the path's claim covers the levels
     RemoveFile(one);
   }
   RemoveFile(GetPart(path));

@@ -9,8 +9,8 @@
 namespace vol
 {
 
-/// That this process, and no other one, writes a file that will be at a path: by a lock beside it (PartFiles::GetLock), which
-/// ends with the process. Where a file system has no locks, nothing is claimed.
+/// Claims a path, so that this process, and no other one, writes a file that will be there: by a lock beside it
+/// (PartFiles::GetLock), which ends with the process. If the file system has no locks, nothing is claimed.
 class PathClaim
 {
 public:

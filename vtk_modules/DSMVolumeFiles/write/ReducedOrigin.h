@@ -14,10 +14,10 @@ namespace vol
 {
 
 /// The first step of a file at half of its samples along each axis that has at least three points. A point's value
-/// is the mean of the file's 2 x 2 x 2 points around it, so it lies half a sample further than the first of them: linear
-/// functions stay as they are, and thin things fade instead of breaking up. A last point without a partner stands
-/// alone, so that nothing of the volume is cut off. Numbers count, not NaN; integers are rounded. A cell's value is that
-/// of the file's cell at its center: what cells have are often names, not amounts.
+/// is the mean of the file's 2 x 2 x 2 points around it, so it lies half a sample further than the first of them:
+/// linear functions stay as they are, and thin things fade instead of breaking up. A last point without a partner
+/// stands alone, so that nothing of the volume is cut off. Numbers count, not NaN; integers are rounded. A cell's
+/// value is that of the file's cell at its center: what cells have are often names, not amounts.
 class ReducedOrigin final : public ValueOrigin
 {
 public:

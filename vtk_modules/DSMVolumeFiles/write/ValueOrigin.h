@@ -21,7 +21,7 @@ public:
   virtual const FileGeometry& GetGeometry() const = 0;
   /// Only the samples of their grids matter; the file chooses its own chunks.
   virtual const std::vector<FileArray>& GetArrays() const = 0;
-  /// Tells, for a later process, which values these are.
+  /// Identifies the values, for a later process.
   virtual std::string Describe() const = 0;
 
   /// Collective. The rank that each of these boxes of an array's samples is dealt to. Throws the same dsm::Error on

@@ -251,8 +251,8 @@ BrickFileLayout CreateLayout(const ValueOrigin& from, const WriteOptions& option
   return layout;
 }
 
-/// Collective. What is to be known of the bricks of the arrays of a brick file, which is read once more for it.
-/// Nothing of what the renderer makes no bricks of.
+/// Collective. Makes the indices of the bricks of a brick file's arrays, for which it reads the file once more.
+/// Arrays that the renderer cannot show get no index.
 std::vector<std::vector<std::byte>> FindIndices(const std::string& path,
   const BrickFileLayout& layout, const WriteOptions& options, dsm::Messenger& messenger,
   const std::function<void(double)>& tell)
@@ -371,8 +371,8 @@ void WriteArray(ValueOrigin& from, const BrickFileLayout& layout, std::size_t ar
   }
 }
 
-/// Collective. Writes the coarser levels of the brick file that a writer has closed, each of the one before, to files of
-/// their own. Those that an earlier call has written are kept. Returns how many there are.
+/// Collective. Writes the coarser levels of the brick file that a writer has closed, each of the one before, to
+/// files of their own. Those that an earlier call has written are kept. Returns how many there are.
 int WriteLevels(const std::string& path, const BrickFileLayout& layout, const std::string& source,
   const WriteOptions& options, dsm::Messenger& messenger, const std::function<void(double)>& tell)
 {

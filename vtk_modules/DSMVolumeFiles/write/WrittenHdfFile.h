@@ -11,7 +11,7 @@
 namespace vol
 {
 
-/// An HDF5 file that is being written, on a disk that may become full at any time. What goes wrong throws dsm::Error,
+/// An HDF5 file that is being written, on a disk that may become full at any time. A failure throws dsm::Error,
 /// which names the file and the cause; then it can still be closed. All members under GetHdfLock.
 class WrittenHdfFile
 {

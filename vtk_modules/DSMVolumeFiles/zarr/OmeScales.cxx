@@ -388,7 +388,7 @@ OmeLevel OmeLevel::Find(const std::string& folder, const Json& scale, std::size_
   }
   if (along)
   {
-    // Of fewer numbers than axes, these are the last axes'.
+    // If there are fewer numbers than axes, they belong to the last axes.
     const std::size_t first = found.Axes.size() - axes;
     const AxisNotes system = found.Axes;
     for (std::size_t axis = 0; axis < axes; ++axis)

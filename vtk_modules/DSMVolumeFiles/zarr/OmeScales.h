@@ -15,7 +15,7 @@
 namespace vol
 {
 
-/// What OME-Zarr (0.1 to 0.6) says of a level of detail: its array, its axes, and where they lie.
+/// A level of detail of OME-Zarr (0.1 to 0.6): its array, its axes, and where they lie.
 struct OmeLevel
 {
   std::string Array; ///< path of the array in the group
@@ -27,9 +27,10 @@ struct OmeLevel
 
   /// Returns the numbers of an array in the group.
   using ReadNumbers = std::function<std::vector<double>(const std::string& path)>;
-  /// `folder`: the group. `scale`: one of its "multiscales"; `level`: one of its datasets. If `readNumbers` is empty, all
-  /// transformations are left out. Coarser levels of an image whose levels have scales only lie as means of the finest
-  /// level's samples do. Throws dsm::Error, which names the folder, and the transformation if it cannot be shown.
+  /// `folder`: the group. `scale`: one of its "multiscales"; `level`: one of its datasets. If `readNumbers` is
+  /// empty, all transformations are left out. Coarser levels of an image whose levels have scales only lie as means
+  /// of the finest level's samples do. Throws dsm::Error, which names the folder, and the transformation if it
+  /// cannot be shown.
   static OmeLevel Find(const std::string& folder, const nlohmann::json& scale, std::size_t level,
     const ReadNumbers& readNumbers, std::vector<std::string>& warnings);
 };

@@ -24,9 +24,9 @@ struct ZarrAxes
   std::size_t Behind = 0;   ///< how many are behind them: 1 where the last one has components
   SpaceOrder Order = FastestX;
 
-  /// Finds the axes of an array in this folder that has `count` axes, at least three. `notes`: as many, or else nothing is
-  /// known, and the first of five axes is time. A last axis of four or five that has channels has components. Throws
-  /// dsm::Error if the last three of the other axes, and only these, are not in space.
+  /// Finds the axes of an array in this folder that has `count` axes, at least three. `notes`: as many, or else
+  /// nothing is known, and the first of five axes is time. A last axis of four or five that has channels has
+  /// components. Throws dsm::Error if the last three of the other axes, and only these, are not in space.
   static ZarrAxes Find(const std::string& folder, const AxisNotes& notes, std::size_t count);
 
   /// Which one of an array, or of its transformation, of so many axes is x, y or z.

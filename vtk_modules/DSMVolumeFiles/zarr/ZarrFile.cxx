@@ -368,7 +368,7 @@ private:
     return std::make_shared<const ZarrMetadata>(std::move(*data));
   }
 
-  /// Those of a sample must be beside one another.
+  /// Throws unless the components of a sample are beside one another.
   static void CheckComponents(
     const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
   {

@@ -10,7 +10,7 @@
 namespace vol
 {
 
-/// What a folder of Zarr has in it. All functions throw dsm::Error, which names a folder.
+/// The contents of a folder of Zarr. All functions throw dsm::Error, which names a folder.
 namespace ZarrGroup
 {
 

@@ -33,7 +33,7 @@ std::string GetText(const std::string& folder, const nlohmann::json& object, con
 std::vector<std::int64_t> GetIntegers(const std::string& folder, const nlohmann::json& object,
   const char* name, std::uint64_t count, std::int64_t least, std::int64_t most);
 
-/// Returns a number, or those of an array of at most FileLimits::Axes; none where it is no number, or not all are.
+/// Returns a number, or those of an array of at most FileLimits::Axes; empty if a value is not a number.
 std::vector<double> ToNumbers(const nlohmann::json& value);
 /// Returns a member that is an array. Throws dsm::Error, which names the folder and the member, when it is not.
 const nlohmann::json& GetArray(

@@ -15,8 +15,9 @@
 namespace vol
 {
 
-/// Which files of chunks, or of shards, an array's folders have: each folder is listed once, when a file is found to be
-/// missing there. So most of an array of millions of chunks may be nowhere, and none of these is looked for. Any thread.
+/// Which files of chunks, or of shards, an array's folders have: each folder is listed once, when a file is found
+/// to be missing there. So most of an array of millions of chunks may be nowhere, and none of these is looked for.
+/// Any thread.
 class ZarrListing
 {
 public:
@@ -29,7 +30,8 @@ public:
   bool IsMissing(const Index& index) const;
   /// The same, if the folder is unchanged since.
   bool IsStillMissing(const Index& index);
-  /// Lists the folder that lacks the file, unless it was written to just now. To be called when there is no such file.
+  /// Lists the folder of a missing file, unless it was written to just now. To be called when there is no such
+  /// file.
   void NoteMissing(const Index& index);
 
   /// Returns the bytes in memory.

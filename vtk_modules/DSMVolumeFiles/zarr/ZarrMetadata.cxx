@@ -322,7 +322,7 @@ std::vector<CodecStep> ParseCodecs3(const std::string& folder, const Json& codec
       steps.push_back(ParseCodec(folder, name, configuration, { type }));
       if (steps.back().What->ConvertsNumbers)
       {
-        // Of numbers, not bytes: only "bytes" gives them an order.
+        // It works on numbers, not on bytes: only "bytes" gives these an order.
         CodecParameters& with = steps.back().With;
         with.Decoded.Swapped = with.Encoded.Swapped = false;
         type = with.Encoded.Type;

@@ -12,11 +12,12 @@
 namespace vol
 {
 
-/// The names of an array's axes, where it tells them. `folder`: the array's. Throws dsm::Error, which names it, where a name
-/// is too long.
+/// The names of an array's axes, where it tells them. `folder`: the array's. Throws dsm::Error, which names it,
+/// where a name is too long.
 AxisNotes NameZarrAxes(const std::string& folder, const ZarrMetadata& data);
 
-/// What the array in a folder, and those beside it that have the names of its axes, say of its axes.
+/// Reads the notes on the axes of the array in a folder: its own, and those of the arrays beside it that have the
+/// names of its axes.
 AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes);
 
 /// Adds a sentence to `warnings` for each place that is not along the array's axes.

@@ -9,8 +9,8 @@
 namespace vol
 {
 
-/// All numbers of the Zarr array of one axis in a folder, such as coordinates. None where there is no such array, or it has
-/// more than `most` numbers, or shards. Throws dsm::Error when a chunk cannot be read.
+/// All numbers of the Zarr array of one axis in a folder, such as coordinates. None where there is no such array,
+/// or it has more than `most` numbers, or shards. Throws dsm::Error when a chunk cannot be read.
 std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most);
 
 } // namespace vol

@@ -22,8 +22,8 @@ struct vtkDSMBlockLook
   }
 };
 
-/// By the block's number in this rank's dataset, as vtkCompositeDataIterator counts; 0 is a dataset that is one image, and the colors and the
-/// opacity of AMR.
+/// By the block's number in this rank's dataset, as vtkCompositeDataIterator counts; 0 is a dataset that is one
+/// image, and the colors and the opacity of AMR.
 using vtkDSMBlockLooks = std::map<unsigned int, vtkDSMBlockLook>;
 
 #endif

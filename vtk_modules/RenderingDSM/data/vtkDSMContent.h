@@ -6,8 +6,8 @@
 
 class vtkAbstractArray;
 
-/// Tells whether arrays hold what they held, whatever object they are in and whether or not anybody
-/// called Modified: a simulation may write to the same memory, a reader may read the same again.
+/// Finds out whether arrays have the same contents as before, whatever object they are in and whether or not the
+/// application called Modified: a simulation may write to the same memory, a reader may read the same again.
 namespace vtkDSMContent
 {
 /// Local. Returns a hash of the array's type, shape and values: equal, for all practical purposes, only for

@@ -23,9 +23,9 @@
 class vtkAbstractArray;
 class vtkDataSet;
 
-/// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time: values of points,
-/// or of cells, of which bricks have the means at points. What
-/// says that it is collective is for all ranks; failures are dsm::Error, the same on every rank.
+/// A lattice whose samples are all in one file, so that any rank can cut any of its bricks at any time: values of
+/// points, or of cells, of which bricks have the means at points. Functions that are collective are for all ranks;
+/// their failures are dsm::Error, the same on every rank.
 class vtkDSMFileVolume
 {
 public:
@@ -58,8 +58,8 @@ public:
   /// Levels of detail that the file has below the one that was opened; 0 where the lattice is but a part of the
   /// file's samples.
   int CountCoarser() const;
-  /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such array,
-  /// or does not fill the same place.
+  /// Collective. The first coarser level is 1. Null, on all ranks, where a rank cannot open it, or it has no such
+  /// array, or does not fill the same place.
   std::unique_ptr<vtkDSMFileVolume> FindCoarser(dsm::Messenger& messenger, int level) const;
   /// Returns the bytes that the cache of chunks needs for one brick.
   std::uint64_t CountChunkBytesOfBrick(const bricks::BrickLattice& lattice) const
@@ -100,8 +100,8 @@ public:
   /// Bricks of the lattice. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const vol::FileBrickReader> CreateReader(
     const bricks::BrickLattice& lattice, bool scattered) const;
-  /// The same as rays meet them. What is read or kept is read ahead of the next time step, too, but for bricks that
-  /// have the same digests there; `digests` may be empty.
+  /// The same as rays meet them. Bricks that are read or kept are read ahead for the next time step, too, except
+  /// those that have the same digests there; `digests` may be empty.
   std::shared_ptr<const dsm::BlockReader> CreateSteppingReader(
     const bricks::BrickLattice& lattice, std::shared_ptr<const Digests> digests) const;
 
@@ -136,7 +136,8 @@ private:
   vol::KeptFile GetKept(const bricks::BrickLattice& lattice) const;
   /// That, or what was kept since an earlier time, or empty.
   std::vector<std::byte> LoadIndex(const bricks::BrickLattice& lattice) const;
-  /// Local: which bricks are not known to have these digests. One of a step that cannot be read is no failure.
+  /// Local: returns which bricks are not known to have these digests. That a step cannot be read does not count as
+  /// a failure.
   std::vector<bool> FindChanges(const bricks::BrickLattice& lattice, const Digests& digests) const;
   /// Returns the key of the bricks that are read ahead for this step.
   std::uint64_t GetKey(const bricks::BrickLattice& lattice) const;

@@ -18,8 +18,8 @@
 class vtkDataArray;
 class vtkDataObject;
 
-/// The arrays of numbers of a dataset of images that is spread over the ranks: which there are, and whether one serves as what
-/// the user chose it for.
+/// The arrays of numbers of a dataset of images that is spread over the ranks: which there are, and whether one
+/// serves as what the user chose it for.
 class vtkDSMImageArrays
 {
 public:
@@ -73,7 +73,8 @@ public:
   };
 
   vtkDSMImageArrays() = default;
-  /// Collective. `parts`: this rank's, with attributes of points or of cells, or of both. `all`: the same with hidden ones.
+  /// Collective. `parts`: this rank's, with attributes of points or of cells, or of both. `all`: the same with
+  /// hidden ones.
   vtkDSMImageArrays(dsm::Messenger& messenger,
     const std::vector<vtkSmartPointer<vtkDataObject>>& parts,
     const std::vector<vtkSmartPointer<vtkDataObject>>& all = {});
@@ -88,8 +89,8 @@ public:
   int CountComponents(const Choice& choice) const;
   /// Returns whether the array chosen as colors may have opacities. The same on every rank.
   bool HasOpacity(const Choice& choice) const;
-  /// Throws a dsm::Error (Missing, where it is that) that says why the choice is not usable, and what is. `infos`: of all ranks' images; `purpose` names
-  /// the array ("isosurface array").
+  /// Throws a dsm::Error (Missing, if there is no such array) that says why the choice is not usable, and what is.
+  /// `infos`: of all ranks' images; `purpose` names the array ("isosurface array").
   [[noreturn]] void Refuse(
     const Choice& choice, const std::string& purpose, const std::vector<Info>& infos) const;
 

@@ -15,8 +15,8 @@
 
 class vtkImageData;
 
-/// The arrays of an image of which each rank has a piece. Pieces may overlap: what is in several is taken from any of
-/// them. What is read lies in one piece, or is gathered from all that have something of it.
+/// The arrays of an image of which each rank has a piece. Pieces may overlap: values in several are taken from any
+/// of them. A box that is read lies in one piece, or is gathered from all that have a part of it.
 class vtkDSMImageOrigin final : public vol::ValueOrigin
 {
 public:

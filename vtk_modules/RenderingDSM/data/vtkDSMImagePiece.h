@@ -19,9 +19,9 @@ class vtkDataObject;
 class vtkDataSet;
 class vtkUnsignedCharArray;
 
-/// One vtkImageData or vtkRectilinearGrid of this rank ("image") as a piece of a lattice: one component of an array of its points or cells, the
-/// magnitude of all, or the colors that they are (rt::PackedColor). Copies nothing; reading is safe from any
-/// thread while the image is not modified.
+/// One vtkImageData or vtkRectilinearGrid of this rank ("image") as a piece of a lattice: one component of an array
+/// of its points or cells, the magnitude of all, or the colors that they are (rt::PackedColor). Copies nothing;
+/// reading is safe from any thread while the image is not modified.
 class vtkDSMImagePiece final : public bricks::VoxelSource
 {
 public:
@@ -39,13 +39,13 @@ public:
   /// and blanked cells that remain make a mask.
   static bricks::PieceInfo Describe(vtkDataSet* image, int leaf);
 
-  /// Returns the coordinates of the points around the cells of a rectilinear grid, as Describe has trimmed them; none of other
-  /// images.
+  /// Returns the coordinates of the points around the cells of a rectilinear grid, as Describe has trimmed them;
+  /// none of other images.
   static bricks::GridPlanes::Coordinates GetCoordinates(
     vtkDataSet* image, const bricks::PieceInfo& info);
 
-  /// One byte a cell of a box in the image's own indices, x fastest: 0 for blanked cells and copies of other pieces' cells,
-  /// else 1. Cells that are marked as refined count as any others.
+  /// One byte a cell of a box in the image's own indices, x fastest: 0 for blanked cells and copies of other
+  /// pieces' cells, else 1. Cells that are marked as refined count as any others.
   static std::vector<std::uint8_t> FindShown(vtkDataSet* image, const bricks::Box& cells);
 
   /// Returns the magnitude of a tuple.

@@ -85,7 +85,7 @@ vtkDSMMeshColors::vtkDSMMeshColors(vtkMapper* mapper, vtkPolyData* data)
   vtkAbstractArray* array = FindArray(mapper, data, field);
   if (!array)
   {
-    // As in VTK, asking for whatever scalars are active is no mistake where there are none.
+    // As in VTK, requesting the active scalars is not an error if there are none.
     const bool named = mapper->GetScalarMode() == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA ||
       mapper->GetScalarMode() == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA ||
       mapper->GetScalarMode() == VTK_SCALAR_MODE_USE_FIELD_DATA;

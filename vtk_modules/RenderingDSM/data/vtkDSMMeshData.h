@@ -49,12 +49,11 @@ public:
     std::vector<std::uint64_t> Source;
   };
 
-  /// Collective; a rank without data takes part. What the input asks for is the same on every rank.
-  /// `content`: of the input now. `old`: what was made of the mapper's data
-  /// before, or null; its meshes are taken over where they would be the same, also those of blocks
-  /// that are hidden now, and else leave the store first, since there may not be room for both. Meshes
-  /// that others made of the same data are shared.
-  /// Failures are dsm::Error, the same on every rank.
+  /// Collective; a rank without data takes part. The requests of the input are the same on every rank. `content`:
+  /// of the input now. `old`: what was made of the mapper's data before, or null; its meshes are taken over where
+  /// they would be the same, also those of blocks that are hidden now, and else leave the store first, since there
+  /// may not be room for both. Meshes that others made of the same data are shared. Failures are dsm::Error, the
+  /// same on every rank.
   vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMeshInput input,
     const vtkDSMMeshContent& content, std::unique_ptr<vtkDSMMeshData> old);
 
@@ -64,8 +63,7 @@ public:
   /// Returns the bounds of all ranks' visible blocks; uninitialized bounds (min > max) if there are
   /// none.
   const double* GetBounds() const { return this->Bounds; }
-  /// Returns a warning about data that are shown in another way than requested; empty if there is
-  /// none. The same on every rank.
+  /// Returns a warning about data that are not shown as requested; empty if there is none. The same on every rank.
   const std::string& GetMessage() const { return this->Message; }
   /// Empty but where there is no such color array. The same on every rank.
   const std::string& GetWarning() const { return this->Warning; }

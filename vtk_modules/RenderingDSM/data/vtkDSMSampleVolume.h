@@ -3,10 +3,10 @@
  * @class   vtkDSMSampleVolume
  * @brief   generates a volume of any size, each piece on its own rank
  *
- * Yields vtkImageData with one array on the points, by default the paper's
- * x^2 + y^2 + z^2 + noise = C on [-1, 1]^3. A sample depends on its index and on the volume's size
- * only, so ranks that ask for different pieces get parts of the same volume, bit for bit, and no
- * rank needs more memory than its piece takes. The samples are computed by all cores.
+ * Yields vtkImageData with one array on the points, by default the paper's x^2 + y^2 + z^2 + noise = C on [-1,
+ * 1]^3. A sample depends on its index and on the volume's size only. So ranks that ask for different pieces get
+ * parts of the same volume, bit for bit, and no rank needs more memory than its piece. The samples are computed by
+ * all cores.
  */
 #ifndef vtkDSMSampleVolume_h
 #define vtkDSMSampleVolume_h

@@ -27,9 +27,9 @@ public:
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const;
   /// The number of the cell, as VTK counts: verts, lines, polygons, strips.
   vtkIdType GetCell(std::uint64_t triangle) const;
-  /// Which sides of a triangle are edges of its polygon (bricks::AllEdges), and not hidden by the edge flags
-  /// that points may have (vtkDataSetAttributes::EDGEFLAG: of the edge that begins at the point). Of
-  /// strips all sides are, as VTK draws them.
+  /// Which sides of a triangle are edges of its polygon (bricks::AllEdges), and not hidden by the edge flags that
+  /// points may have (vtkDataSetAttributes::EDGEFLAG: of the edge that begins at the point). All sides of strips
+  /// are, as VTK draws them.
   unsigned GetEdgeFlags(std::uint64_t triangle) const;
 
   /// Returns whether the data may have triangles with sides that are not edges.

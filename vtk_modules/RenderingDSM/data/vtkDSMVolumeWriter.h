@@ -4,10 +4,10 @@
  * @brief   writes image data in bricks, so that its first picture reads only what it shows
  *
  * The file is VTK's ImageData in HDF5 (VTKHDF), which other programs read, too, with chunks that fit bricks, a
- * checksum of each, and an index of what bricks hold (docs/files.md); dsm_convert writes the same. Every rank of the
- * controller writes its piece of the input: Write is collective. Rank 0 writes, and all ranks must see the file's
- * folder. What cannot be written is an error on every rank, and leaves no file of that name. A
- * conversion of dsm_convert to the same name that can be resumed is not replaced: that is an error, too.
+ * checksum of each, and an index of what bricks hold (docs/files.md); dsm_convert writes the same. Every rank of
+ * the controller writes its piece of the input: Write is collective. Rank 0 writes, and all ranks must see the
+ * file's folder. A failure to write is an error on every rank, and leaves no file of that name. A conversion of
+ * dsm_convert to the same name that can be resumed is not replaced: that is an error, too.
  *
  * All arrays of numbers are written, of points and of cells; which cells are blanked is not.
  */
@@ -60,7 +60,7 @@ public:
 
   ///@{
   /**
-   * Whether coarser levels are written beside the values, each with half the samples along each axis, until one is a
+   * If true, writes coarser levels beside the values, each with half the samples along each axis, until one is a
    * single brick. Off by default. vtkDSMVolumeReader has them as levels.
    */
   virtual void SetCoarserLevels(bool coarser);

@@ -60,9 +60,9 @@ std::string DescribeError(const std::exception& error)
   return dynamic_cast<const std::bad_alloc*>(&error) ? "out of memory." : error.what();
 }
 
-/// Memory for a copy of all: the ranks of a host ask for theirs at the same time, so each has to see what is left when those
-/// before it have taken theirs. `take` also writes to it, for only then it is. Throws dsm::Error, which goes on from the
-/// array's name.
+/// Memory for a copy of all: the ranks of a host ask for theirs at the same time, so each has to see what is left
+/// when those before it have taken theirs. `take` also writes to the memory: the system provides it only then.
+/// Throws dsm::Error, whose text continues the array's name.
 template <class Take>
 void TakeRoom(std::size_t bytes, const Take& take)
 {

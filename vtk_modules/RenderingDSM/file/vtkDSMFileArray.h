@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMFileArray
- * @brief   an array whose values are in a file, and are read when somebody asks for them
+ * @brief   an array whose values are in a file, and are read on demand
  *
- * Every filter that asks for values one by one, or tuple by tuple, works, and reads only the chunks that it
- * needs; they stay in a cache that all such arrays share. A filter that asks for the memory of the values
- * (GetVoidPointer) gets a copy of all of them when that takes at most half of what the host has left; else an
- * error says so, and the filter sees zeros. Values cannot be set. Reading is safe from any thread. What cannot be
- * read is reported once, and is not a number, or zero.
+ * Every filter that asks for values one by one, or tuple by tuple, works, and reads only the chunks that it needs;
+ * they stay in a cache that all such arrays share. A filter that asks for the memory of the values (GetVoidPointer)
+ * gets a copy of all of them when that takes at most half of what the host has left; else an error says so, and the
+ * filter sees zeros. Values cannot be set. Reading is safe from any thread. A failure to read is reported once, and
+ * the values are NaN, or zero.
  */
 
 #ifndef vtkDSMFileArray_h
@@ -123,8 +123,8 @@ private:
 
 /// The values of an array that is a vtkDSMFileArray; else null.
 const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array);
-/// The same for the points or cells of an image that has so many along each axis; null, too, where a filter has given
-/// the array to an image of another shape, so that boxes of the image are none of the file.
+/// The same for the points or cells of an image that has so many along each axis; null, too, if a filter has given
+/// the array to an image of another shape: then a box of the image is not a box of the file.
 const vtkDSMFileValues* vtkDSMGetFileValues(vtkAbstractArray* array, const bricks::Index3& size);
 
 /// An array that shows them, of their type, with the file's name for it.

@@ -120,7 +120,8 @@ public:
   int LastStep = vtkDSMFileValues::None; ///< that was asked for
   int Stride = 0;                        ///< from the one before
 
-  /// A step is asked for. Returns the one that will be next when time goes on as it did; none before it has.
+  /// Called when a step is requested. Returns the next step if time continues as before; None before the second
+  /// step.
   int Advance(int step)
   {
     const bool isKnown = this->LastStep != vtkDSMFileValues::None;

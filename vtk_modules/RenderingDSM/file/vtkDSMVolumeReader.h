@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDSMVolumeReader
- * @brief   image data, or a rectilinear grid, whose values stay in their file until somebody asks for them
+ * @brief   image data, or a rectilinear grid, whose values stay in their file and are read on demand
  *
- * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced. Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
- * values. When it has executed, no value has been read, but for the arrays' ranges, which are found once for a file
- * and kept in the user's cache directory: the arrays of its output (vtkDSMFileArray) read what filters and mappers
- * ask them for, and what was read last stays in a cache that all readers of the process share. Ranks that ask
- * for different pieces get those.
+ * The output is a vtkRectilinearGrid (GetOutputDataObject(0)) where the file's coordinates are not evenly spaced.
+ * Reads HDF5 (VTK's own ImageData, or any dataset of three axes), Zarr and OME-Zarr, NRRD, MetaImage and bare
+ * values. It reads no values when it executes, except once for the arrays' ranges, which are kept in the user's
+ * cache directory. The arrays of its output (vtkDSMFileArray) read the values that filters and mappers request. The
+ * values that were read last stay in a cache that all readers of the process share. Ranks that ask for different
+ * pieces get those.
  */
 
 #ifndef vtkDSMVolumeReader_h
@@ -39,8 +40,8 @@ public:
 
   ///@{
   /**
-   * The file; of Zarr, its folder, or a file of metadata in it. With several files, each is a time step, in the
-   * order in which they are added: all have the same arrays, samples and chunks. GetFileName is the first.
+   * The file; for Zarr, its folder, or a file of metadata in it. Several files are time steps, in the order in
+   * which they are added; all must have the same arrays, samples and chunks. GetFileName returns the first.
    */
   virtual void SetFileName(const char* name);
   virtual void AddFileName(const char* name);
@@ -50,13 +51,13 @@ public:
   ///@}
 
   /**
-   * Whether a file looks like one of a format that is read.
+   * Returns whether a file looks like one of the supported formats.
    */
   virtual int CanReadFile(const char* name);
 
   ///@{
   /**
-   * The arrays to have; all by default.
+   * The arrays to read; all by default.
    */
   virtual vtkDataArraySelection* GetPointDataArraySelection();
   virtual vtkDataArraySelection* GetCellDataArraySelection();
@@ -64,21 +65,21 @@ public:
 
   ///@{
   /**
-   * Of a file with several levels of detail: 0 (the default) is the finest.
+   * Level of detail to read, in a file with several: 0 (the default) is the finest.
    */
   vtkSetMacro(Level, int);
   vtkGetMacro(Level, int);
   ///@}
 
   /**
-   * The file's levels of detail, each in a line, such as "1: 256 x 256 x 128", which has the points along x, y and z.
-   * Opens those that are not open; empty where the file cannot be opened.
+   * The file's levels of detail, each in a line with the points along x, y and z, such as "1: 256 x 256 x 128".
+   * Opens levels that are not open yet; empty if the file cannot be opened.
    */
   virtual const char* GetLevelNames();
 
   ///@{
   /**
-   * Of an HDF5 file that is not VTK's: the dataset to have. Empty (the default): all those that have the largest
+   * Dataset to read from an HDF5 file that is not VTK's. Empty (the default): all datasets that have the largest
    * shape of three axes in the file.
    */
   vtkSetMacro(DatasetName, std::string);
@@ -87,8 +88,8 @@ public:
 
   ///@{
   /**
-   * Distance of samples along x, y and z, instead of what the file says; 0 (the default): as it says. With OwnOrigin
-   * (false by default), the position of the first sample, likewise.
+   * Distance of samples along x, y and z, which replaces the file's; 0 (the default) keeps the file's. If OwnOrigin
+   * is true (false by default), Origin replaces the position of the first sample, likewise.
    */
   vtkSetVector3Macro(Spacing, double);
   vtkGetVector3Macro(Spacing, double);
@@ -101,9 +102,9 @@ public:
 
   ///@{
   /**
-   * Whether the file has bare values (.raw), and what describes these: samples along each axis, their type (VTK_FLOAT
-   * and so on) and number of components, whether the high byte comes first, bytes before the first value, and the
-   * distance of samples, unless Spacing has it.
+   * GetRawFile returns whether the file has bare values (.raw). The others describe these: samples along each axis,
+   * their type (VTK_FLOAT and so on) and number of components, the order of bytes (RawBigEndian), bytes before the
+   * first value, and the distance of samples, unless Spacing has it.
    */
   virtual bool GetRawFile();
   vtkSetVector3Macro(RawDimensions, int);
@@ -122,9 +123,9 @@ public:
 
   ///@{
   /**
-   * Whether the output has ordinary arrays, each read as a whole; false by default. Before VTK 9.4,
-   * vtkTemporalStatistics needs it: of others it adds up steps wrongly, without a word. It is an error when an array
-   * takes more than half of what the host has left.
+   * If true, the output has ordinary arrays, each read entirely; false by default. Before VTK 9.4,
+   * vtkTemporalStatistics needs it: it silently adds up the steps of other arrays wrongly. It is an error if an
+   * array takes more than half of the host's available memory.
    */
   vtkSetMacro(ValuesInMemory, bool);
   vtkGetMacro(ValuesInMemory, bool);
@@ -133,16 +134,16 @@ public:
 
   ///@{
   /**
-   * MiB of values of files that stay in memory, in the whole process; 128 by default. While pictures are made of a
-   * file, it is what eight bricks need of its chunks together, where that is more, and at most an eighth of the memory; or
-   * what four need, and at most half of it.
+   * Limit in MiB of the values of files that stay in memory, in the whole process; 128 by default. While a file is
+   * traced, the limit is raised to the chunks that eight bricks need together, up to an eighth of the memory. If
+   * the chunks of four bricks exceed that, it is raised to these, up to half of the memory.
    */
   static void SetCacheMebibytes(int size);
   static int GetCacheMebibytes();
   ///@}
 
   /**
-   * Bytes of values that were read from files so far, in the whole process, but for those of ranges.
+   * Returns the bytes of values that were read from files so far, in the whole process, without those for ranges.
    */
   static vtkTypeUInt64 GetBytesRead();
 
@@ -171,7 +172,8 @@ private:
   void TellOfRest() const;
   /// The extent, the place in the world, the scalars and the time steps of the open file.
   void TellOfFile(vtkInformation* information) const;
-  /// Returns whether the file can be opened by now: what describes bare values must be there. Opens it. Throws dsm::Error.
+  /// Returns whether the file can be opened by now: what describes bare values must be there. Opens it. Throws
+  /// dsm::Error.
   bool OpenIfDescribed();
   /// Makes the output an image or a rectilinear grid.
   void CreateOutput(vtkInformation* information);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The counters of a frame's statistics, of each rank. Made from this table: the columns of vtkDSMStatistics, those of the
-# panel Ray Tracing Memory, and the second table of docs/properties.md. cmake/DSMSettings.cmake says what each word means.
+# The counters of a frame's statistics, of each rank. Made from this table: the columns of vtkDSMStatistics, those of
+# the panel Ray Tracing Memory, and the second table of docs/properties.md. cmake/DSMSettings.cmake says what each word
+# means.
 
 dsm_counter(Threads UNIT Count VALUE "frame.WorkerCounters.size()"
   TEXT "Tracing threads.")

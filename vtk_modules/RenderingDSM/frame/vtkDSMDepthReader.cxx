@@ -30,8 +30,8 @@
 #include <iterator>
 #include <string>
 
-/// Draws the nearest translucent surfaces into one depth buffer, then those behind them into the other, and so on: depth
-/// peeling (Everitt 2001), of depths alone.
+/// Draws the nearest translucent surfaces into one depth buffer, then those behind them into the other, and so on:
+/// depth peeling (Everitt 2001), of depths alone.
 class vtkDSMDepthReader::Peeling : public vtkOpenGLRenderPass
 {
 public:

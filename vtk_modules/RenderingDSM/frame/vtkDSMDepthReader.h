@@ -12,12 +12,12 @@ class vtkRenderer;
 class vtkRenderPass;
 class vtkTextureObject;
 
-/// Finds how far away props of the application are: where opaque ones end rays, and where translucent ones cut media into
-/// layers. The props are drawn for that, into a buffer of its own, before the renderer draws them.
+/// Finds how far away props of the application are: where opaque ones end rays, and where translucent ones cut
+/// media into layers. The props are drawn for that, into a buffer of its own, before the renderer draws them.
 ///
-/// Pictures hold window depths of the renderer's viewport, row by row from the bottom, of `width` x `height` pixels, each
-/// `pixelSize` pixels of the screen wide and high; 1 where there is nothing. For the thread that renders, while the window
-/// is current.
+/// Pictures hold window depths of the renderer's viewport, row by row from the bottom, of `width` x `height`
+/// pixels, each `pixelSize` pixels of the screen wide and high; 1 where there is nothing. For the thread that
+/// renders, while the window is current.
 class vtkDSMDepthReader
 {
 public:

@@ -33,12 +33,13 @@ public:
   /// visible.
   bool AreBlended() const { return static_cast<bool>(this->DrawsColor); }
 
-  /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else nothing.
+  /// Local, before Gather: of this rank's part of a frame, as much of what it draws as needs no other ranks; else
+  /// nothing.
   rt::Picture Assemble(const rt::Frame& frame) const;
 
-  /// Collective where NeedsRanks: what this rank draws; the whole frame, or its own tiles. `assembled`: see Assemble.
-  /// `hasEdges`: an opaque surface may cover pixels in part. What is behind it may be another rank's, so all ranks draw
-  /// such pixels.
+  /// Collective where NeedsRanks: what this rank draws; the whole frame, or its own tiles. `assembled`: see
+  /// Assemble. `hasEdges`: an opaque surface may cover pixels in part. The surface behind it may be another rank's,
+  /// so all ranks draw such pixels.
   rt::Picture Gather(
     dsm::Messenger& messenger, const rt::Frame& frame, rt::Picture assembled, bool hasEdges) const;
   bool NeedsRanks(bool hasEdges) const { return this->DrawsColor || hasEdges; }

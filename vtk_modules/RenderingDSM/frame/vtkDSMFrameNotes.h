@@ -39,9 +39,9 @@ public:
   /// Local.
   static Place FindPlace(vtkRenderer* renderer, const rt::Picture& picture);
 
-  /// Each into a corner of the view on the left: the text above, the legend below; the picture gets its part of them.
-  /// What is empty, or does not fit the view, is left out, all of it where the application has no text renderer (VTK's
-  /// RenderingFreeType).
+  /// Each into a corner of the view on the left: the text above, the legend below; the picture gets its part of
+  /// them. A part that is empty, or does not fit the view, is left out. Without a text renderer in the application
+  /// (VTK's RenderingFreeType), both are.
   static void Draw(const std::string& text, const std::vector<Entry>& legend, const Place& place,
     rt::Picture& picture);
 };

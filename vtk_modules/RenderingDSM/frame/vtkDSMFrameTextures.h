@@ -25,8 +25,8 @@ public:
   int GetWidth() const { return this->Width; }
   int GetHeight() const { return this->Height; }
 
-  /// Brings the pixels to the window's graphics card, where they are not there yet, and takes two
-  /// texture units, until Deactivate.
+  /// Uploads the pixels to the window's graphics card, unless it has them already, and takes two texture units
+  /// until Deactivate.
   void Activate(vtkOpenGLRenderWindow* window);
   void Deactivate();
 

@@ -176,7 +176,7 @@ void vtkDSMStatistics::Take(const rt::Frame& frame, int samples, int wanted, int
     }
     this->FrameSeconds = std::max(this->FrameSeconds, row.FrameSeconds);
   }
-  // A rank goes on sending after its report.
+  // A rank continues to send after its report.
   for (std::size_t rank = 0; rank < sent.size(); ++rank)
   {
     this->Rows[rank].BytesSent = sent[rank];
@@ -272,7 +272,7 @@ std::string vtkDSMStatistics::GetSummary() const
   }
   text << count(static_cast<std::int64_t>(this->Rows.size()), "rank") << ", "
        << count(sum.Threads, "thread") << "\n";
-  // Held by all ranks together. What a rank reads in place is another's, and held once.
+  // Sums over all ranks. Memory that a rank reads in place belongs to another rank, and counts once.
   text << this->Organization << ", MiB: " << toMebibytes(sum.BytesResident) << " owned"
        << (sum.BytesShared > 0 ? ", shared on hosts,\n" : ",\n") << toMebibytes(sum.BytesCopied)
        << " copied, " << toMebibytes(sum.BytesCached) << " cached\n";

@@ -32,15 +32,15 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * This rank's counters of a frame, for all ranks: what rt::FrameRenderer::Records calls a report. `ranks` trace, of which
-   * this is number `rank`.
+   * Returns this rank's counters of a frame, as a report for all ranks (rt::FrameRenderer::Records). `ranks` trace,
+   * and this is number `rank`.
    */
   static std::vector<std::byte> CreateReport(
     dsm::BlockStore& store, const rt::Frame& frame, int rank, int ranks);
 
   /**
-   * Takes in every rank's counters, from the reports that the frame has. `samples` of each pixel are there of those
-   * that are `wanted`; the data were shown `coarser` levels below the finest.
+   * Takes every rank's counters from the frame's reports. Each pixel has `samples` of those that are `wanted`; the
+   * data were shown `coarser` levels below the finest.
    */
   void Take(const rt::Frame& frame, int samples, int wanted, int coarser);
 
@@ -50,18 +50,18 @@ public:
   void Clear();
 
   /**
-   * From the collective start of the frame until the slowest rank was done; 0 without a frame.
+   * Returns the seconds from the collective start of the frame until the slowest rank was done; 0 without a frame.
    */
   vtkGetMacro(FrameSeconds, double);
 
   /**
-   * How many levels below the finest the data of the frame were, where there are as many; see
+   * Returns how many levels below the finest the data of the frame were, if there are as many; see
    * vtkDSMMemoryOptions::SetCoarserDataWhileMoving. 0 for the finest, and without a frame.
    */
   vtkGetMacro(CoarserLevel, int);
 
   /**
-   * How often the frame had to wait for a brick, on all ranks.
+   * Returns how often the frame had to wait for a brick, on all ranks.
    */
   vtkTypeInt64 GetNumberOfMisses() const;
 
@@ -83,17 +83,17 @@ public:
   void GetWorkerTable(vtkTable* table) const;
 
   /**
-   * The most telling figures in a few lines of text; empty without a frame.
+   * The most important counters in a few lines of text; empty without a frame.
    */
   std::string GetSummary() const;
 
   /**
-   * Of the last frame; 0 without one.
+   * Number of ranks that traced the last frame; 0 without one.
    */
   int GetNumberOfRanks() const;
 
   /**
-   * The name of the host that a rank runs on; empty for a rank that there is not.
+   * The name of the host that a rank runs on; empty if the rank does not exist.
    */
   std::string GetHost(int rank) const;
 

@@ -20,9 +20,9 @@ class vtkPolyData;
 class vtkUnsignedIntArray;
 class vtkVoxel;
 
-/// Collects the triangles of isosurfaces in cells, by VTK's marching cubes. Each triangle knows its cell (vtkOriginalCellIds),
-/// each point the nearest corner of one (vtkOriginalPointIds), and both the block of a composite dataset that has these
-/// (vtkCompositeIndex). Cells share the points on their common edges. One thread.
+/// Collects the triangles of isosurfaces in cells, by VTK's marching cubes. Each triangle knows its cell
+/// (vtkOriginalCellIds), each point the nearest corner of one (vtkOriginalPointIds), and both the block of a
+/// composite dataset that has these (vtkCompositeIndex). Cells share the points on their common edges. One thread.
 class vtkDSMCellTriangles
 {
 public:
@@ -34,8 +34,8 @@ public:
   ~vtkDSMCellTriangles();
 
   ///@{
-  /// Before any cell, for cells of one dataset: values of its points are interpolated, those of its cells given to their
-  /// triangles.
+  /// Before any cell, for cells of one dataset: values of its points are interpolated, those of its cells given to
+  /// their triangles.
   void TakePointArray(vtkDataArray* array);
   void TakeCellArray(vtkDataArray* array);
   ///@}

@@ -3,14 +3,13 @@
  * @class   vtkDSMPolyDataMapper
  * @brief   ray traces polygons, lines and points that are spread over the ranks
  *
- * Used by a vtkActor in place of any other vtkPolyDataMapper. The input is this rank's part of the
- * dataset: vtkPolyData, or a composite dataset of vtkPolyData, or nothing. What it looks like comes
- * from the actor's property and backface property and from the mapper's own settings, as usual:
- * ScalarVisibility, ScalarMode, the color array (SelectColorArray), ColorMode, LookupTable,
- * UseLookupTableScalarRange and ScalarRange, InterpolateScalarsBeforeMapping, Static. Culling,
- * interpolation (flat, or by the points' normals), opacity and lighting are the property's. A
- * property's representation (points, wireframe) is not used. With EdgeVisibility, the edges of the
- * input's polygons are drawn on the surface, in EdgeColor and LineWidth pixels wide. The actor's
+ * Used by a vtkActor in place of any other vtkPolyDataMapper. The input is this rank's part of the dataset:
+ * vtkPolyData, or a composite dataset of vtkPolyData, or nothing. Its look comes from the actor's property and
+ * backface property and from the mapper's own settings, as usual: ScalarVisibility, ScalarMode, the color array
+ * (SelectColorArray), ColorMode, LookupTable, UseLookupTableScalarRange and ScalarRange,
+ * InterpolateScalarsBeforeMapping, Static. Culling, interpolation (flat, or by the points' normals), opacity and
+ * lighting are the property's. A property's representation (points, wireframe) is not used. With EdgeVisibility,
+ * the edges of the input's polygons are drawn on the surface, in EdgeColor and LineWidth pixels wide. The actor's
  * texture, whole on every rank, is laid on the surface by its texture coordinates.
  *
  * Values are mapped to colors where a ray meets the surface, so a change of the color map, the
@@ -48,9 +47,9 @@ public:
 
   ///@{
   /**
-   * For whoever gives the mapper copies, or parts, of a pipeline's data: what they were made from, which is not kept
-   * alive. Once that has changed, what this mapper has is old: where another one shows the new data, and there is room
-   * for one of both only, the bricks of the old ones go first.
+   * Set this if the input is a copy or a part of a pipeline's data: the original, which is not kept alive. Once
+   * that has changed, the mapper's data are old. If another mapper shows the new data, and there is room for one of
+   * both only, the bricks of the old data go first.
    */
   void SetOriginalData(vtkDataObject* data);
   bool HasOldData() const;
@@ -126,8 +125,8 @@ public:
 
   ///@{
   /**
-   * Whether the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by
-   * default. In one process only: ranks must make it together, before the first frame.
+   * If true, the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by default.
+   * In one process only: ranks must make it together, before the first frame.
    */
   vtkSetMacro(MakesScene, bool);
   vtkGetMacro(MakesScene, bool);
@@ -148,8 +147,8 @@ public:
   ///@}
 
   /**
-   * Of a mapper of this class, what it has beyond vtkPolyDataMapper, too; options and attributes of blocks in common with
-   * it.
+   * Copies all that a mapper of this class has beyond vtkPolyDataMapper, too; shares its options and attributes of
+   * blocks.
    */
   void ShallowCopy(vtkAbstractMapper* mapper) override;
 

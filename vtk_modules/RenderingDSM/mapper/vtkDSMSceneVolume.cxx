@@ -343,7 +343,7 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
     {
       if (isConfigured && !published->IsMissing)
       {
-        this->Reported.clear(); // whoever has changed the settings shall know that it did not help
+        this->Reported.clear(); // the user sees that changed settings did not help
       }
       // Without its colors a surface is there, and ParaView's own says nothing then.
       const bool isShown = published->IsMissing && published != this->GetIso();

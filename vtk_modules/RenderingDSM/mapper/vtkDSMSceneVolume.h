@@ -68,7 +68,7 @@ private:
     bricks::ValueRange GetRange() const;
   };
 
-  /// That are shown at once: components of an array, at most.
+  /// The most arrays, or components of one, that can be shown together.
   static constexpr std::size_t MostArrays = 4;
 
   /// Collective. Takes in the mapper's dataset; bricks of arrays that hold what they held are kept.
@@ -91,7 +91,8 @@ private:
   /// Returns the shown arrays among the available ones: see vtkDSMVolumeLook::GetShown.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
   ///@{
-  /// The array of the isosurfaces, slices, or of the medium's opacities; the one that colors these; null where there is none.
+  /// The array of the isosurfaces, slices, or of the medium's opacities; the one that colors these; null where
+  /// there is none.
   std::shared_ptr<Published> GetIso() const
   {
     return this->Arrays.empty() ? nullptr : this->Arrays.front();
@@ -132,7 +133,7 @@ private:
       ? nullptr
       : std::get<FieldType>(parts[part]->GetField(glm::dmat4(1.0))).Voxels;
   }
-  /// The same, if a medium takes its colors from another array than its opacities.
+  /// The same, if the array of a medium's colors differs from that of its opacities.
   template <class FieldType>
   std::shared_ptr<const typename FieldType::Values> FindOwnColors(std::size_t part) const
   {

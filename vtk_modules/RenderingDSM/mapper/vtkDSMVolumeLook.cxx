@@ -350,7 +350,7 @@ vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetIsoChoice(const vtkDSMImageArrays&
 vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetNamedIsoChoice() const
 {
   vtkDSMVolumeMapper* mapper = this->Mapper;
-  // The number that stands for colors is no component of an isosurface array.
+  // The number that stands for colors is not a component of an isosurface array.
   constexpr int none = std::numeric_limits<int>::min();
   const int component =
     mapper->GetIsoComponent() >= vtkDSMImagePiece::Magnitude ? mapper->GetIsoComponent() : none;

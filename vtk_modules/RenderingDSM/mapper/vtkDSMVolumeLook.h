@@ -50,12 +50,12 @@ public:
   };
   /// `arrays`: those that there are.
   Components GetComponents(const vtkDSMImageArrays& arrays) const;
-  /// Tells what the property asks for, of the array's components, that media do not have yet.
+  /// Adds warnings about features that the property requests for the array's components, and media do not have yet.
   void FindMissingFeatures(
     const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
-  /// the medium, the property and its time, the blend mode and the range of an average, the component whose functions are
-  /// taken and its weight.
+  /// the medium, the property and its time, the blend mode and the range of an average, the component whose
+  /// functions are taken and its weight.
   using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
     int, std::array<double, 2>, int, double>;
   /// `component`: one of several independent ones, or none (std::nullopt).
@@ -73,15 +73,15 @@ public:
   /// opacities and that of the colors; if the components are independent, each component. `arrays`:
   /// the available arrays.
   std::vector<vtkDSMVolumeData::Choice> GetShown(const vtkDSMImageArrays& arrays) const;
-  /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds what is
-  /// wrong with them to the messages.
+  /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds
+  /// what is wrong with them to the messages.
   std::vector<double> GetIsovalues(
     const std::optional<double>& suggested, std::vector<std::string>& messages) const;
   void SetMaterials(double isovalue, rt::IsosurfaceLook& look) const;
   /// Returns whether the slices, and the faces of isosurfaces, have the colors of an array.
   bool HasColoredSlices() const;
-  /// The slices of a part, in world space, by the indices of these values. Those by an index that the part does not have are
-  /// left out.
+  /// The slices of a part, in world space, by the indices of these values. Those by an index that the part does not
+  /// have are left out.
   std::vector<rt::SectionPlane> GetSlices(
     const glm::dmat4& dataToWorld, const vtkDSMPartValues& values) const;
   /// Sets how slices and faces of isosurfaces look, but for their colors.

@@ -7,11 +7,12 @@
  * the dataset: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset whose blocks are
  * any of these but AMR, or nothing. Ranks may have different ones. Other blocks are not shown.
  *
- * It stands in for vtkGPUVolumeRayCastMapper and, of AMR, for vtkAMRVolumeMapper: the blend mode Composite (the default) shows the volume as a medium, by the
- * color and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of
- * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the array.
- * Interpolation is trilinear always. Shading is VTK's, also gradient opacity; with shadows and ambient occlusion of the
- * light options, volumes shade themselves. The blend mode Slice is not there yet, and the mapper says so.
+ * It stands in for vtkGPUVolumeRayCastMapper and, for AMR, for vtkAMRVolumeMapper: the blend mode Composite (the
+ * default) shows the volume as a medium, by the color and opacity functions and the unit distance of the
+ * vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of AverageIPScalarRange) and additive show what they
+ * show there. ScalarMode and SelectScalarArray() choose the array. Interpolation is trilinear always. Shading is
+ * VTK's, also gradient opacity; with shadows and ambient occlusion of the light options, volumes shade themselves.
+ * The blend mode Slice is not supported; the mapper warns about it.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
  * the mapper's own: IsoArray, IsoValues, ColorArray, and a vtkProperty, the
@@ -64,9 +65,9 @@ public:
 
   ///@{
   /**
-   * For whoever gives the mapper copies, or parts, of a pipeline's data: what they were made from, which is not kept
-   * alive. Once that has changed, what this mapper has is old: where another one shows the new data, and there is room
-   * for one of both only, the bricks of the old ones go first. Arrays that only left-out blocks have are not reported as
+   * Set this if the input is a copy or a part of a pipeline's data: the original, which is not kept alive. Once
+   * that has changed, the mapper's data are old. If another mapper shows the new data, and there is room for one of
+   * both only, the bricks of the old data go first. Arrays that only left-out blocks have are not reported as
    * missing.
    */
   void SetOriginalData(vtkDataObject* data);
@@ -85,7 +86,7 @@ public:
 
   ///@{
   /**
-   * Whether the cells' array of the name IsoArray is meant, not the points'. Off by default. The value of a point is the
+   * If true, IsoArray names an array of the cells, not of the points. Off by default. The value of a point is the
    * mean of the cells around it, as vtkCellDataToPointData makes it.
    */
   vtkSetMacro(IsoArrayOnCells, bool);
@@ -94,8 +95,8 @@ public:
 
   ///@{
   /**
-   * The array's component; -1, or the number of components, is the magnitude. Default 0: for a volume, in the blend mode
-   * composite, all components as its property's IndependentComponents and ComponentWeight say, as
+   * The array's component; -1, or the number of components, is the magnitude. Default 0: for a volume, in the blend
+   * mode composite, all components as its property's IndependentComponents and ComponentWeight say, as
    * vtkGPUVolumeRayCastMapper does. With three, or more than four, that depend on one another, an error says so.
    */
   vtkSetMacro(IsoComponent, int);
@@ -104,8 +105,8 @@ public:
 
   ///@{
   /**
-   * Whether values of the array outside of ValidRange are missing, as NaN is: cells with such a corner, or of such a
-   * value, have no surface, medium, or slice, and do not count for the automatic isovalue. Off by default.
+   * If true, values of the array outside of ValidRange are missing, as NaN is: cells with such a corner, or of such
+   * a value, have no surface, medium, or slice, and do not count for the automatic isovalue. Off by default.
    */
   vtkSetMacro(IgnoreValues, bool);
   vtkGetMacro(IgnoreValues, bool);
@@ -132,10 +133,10 @@ public:
 
   ///@{
   /**
-   * Whether the surface of a value that the data suggest is drawn while there are no isovalues. Off by
-   * default. The same value for any number of ranks. When the array's data change, the value stays if the new
-   * data have a surface there and at least half of their range of values in common with the data that suggested it,
-   * as time steps usually do. Otherwise the new data suggest another.
+   * If true, the mapper draws the surface of a value that the data suggest while there are no isovalues. Off by
+   * default. The same value for any number of ranks. When the array's data change, the value stays if the new data
+   * have a surface there, and share at least half of their range of values with the data that suggested it. Time
+   * steps usually do. Otherwise the new data suggest another.
    */
   vtkSetMacro(AutomaticIsoValue, bool);
   vtkGetMacro(AutomaticIsoValue, bool);
@@ -157,8 +158,8 @@ public:
 
   ///@{
   /**
-   * Whether nothing but isosurfaces is shown, also while there are no isovalues. Off by default: then a mapper without
-   * isovalues shows the volume as its blend mode says.
+   * If true, the mapper shows nothing but isosurfaces, also while there are no isovalues. Off by default: then a
+   * mapper without isovalues shows the volume as its blend mode says.
    */
   vtkSetMacro(SurfacesOnly, bool);
   vtkGetMacro(SurfacesOnly, bool);
@@ -167,8 +168,8 @@ public:
 
   ///@{
   /**
-   * The array, of points or of cells, and its component (-1: its magnitude), whose values the opacity function maps; the
-   * color function maps those that are shown else. Empty (the default): both map the same.
+   * The array, of points or of cells, and its component (-1: its magnitude), whose values the opacity function
+   * maps; the color function maps those that are shown else. Empty (the default): both map the same.
    */
   vtkSetMacro(OpacityArray, std::string);
   vtkGetMacro(OpacityArray, std::string);
@@ -180,9 +181,9 @@ public:
 
   ///@{
   /**
-   * The part of a volume's look that is light scattered once towards the viewer, from 0 to 1; the rest is as the property
-   * says: shaded, or the color itself. The property's ScatteringAnisotropy tells where light is scattered to. Shadows
-   * are those of the light options. 0 by default.
+   * The part of a volume's look that is light scattered once towards the viewer, from 0 to 1; the rest is as the
+   * property says: shaded, or the color itself. The property's ScatteringAnisotropy tells where light is scattered
+   * to. Shadows are those of the light options. 0 by default.
    */
   vtkSetClampMacro(Scattering, double, 0.0, 1.0);
   vtkGetMacro(Scattering, double);
@@ -190,9 +191,10 @@ public:
 
   ///@{
   /**
-   * Whether planes through the volume are shown, and not the medium. Off by default. Isosurfaces are shown with them
-   * if there are isovalues. Planes have the color of the array ColorArray; while ScalarVisibility is on and ColorArray is
-   * empty, of the array IsoArray; while it is off, of the surface property, which gives their opacity in any case.
+   * If true, the mapper shows planes through the volume, and not the medium. Off by default. Isosurfaces are shown
+   * with them if there are isovalues. Planes have the color of the array ColorArray; while ScalarVisibility is on
+   * and ColorArray is empty, of the array IsoArray; while it is off, of the surface property, which gives their
+   * opacity in any case.
    */
   vtkSetMacro(Slicing, bool);
   vtkGetMacro(Slicing, bool);
@@ -231,7 +233,7 @@ public:
 
   ///@{
   /**
-   * Whether slices are lit. Off by default: they show the colors of the lookup table as they are.
+   * If true, slices are lit. Off by default: they show the colors of the lookup table as they are.
    */
   vtkSetMacro(SliceLighting, bool);
   vtkGetMacro(SliceLighting, bool);
@@ -240,8 +242,8 @@ public:
 
   ///@{
   /**
-   * Whether a place of a slice has the color of the value interpolated there (the default), or that of the nearest
-   * sample. Values of cells are never interpolated.
+   * If true (the default), a place of a slice has the color of the value interpolated there, else that of the
+   * nearest sample. Values of cells are never interpolated.
    */
   vtkSetMacro(InterpolateSlices, bool);
   vtkGetMacro(InterpolateSlices, bool);
@@ -259,8 +261,8 @@ public:
 
   ///@{
   /**
-   * Whether the faces are shown that the mapper's clipping planes cut. Off by default. Those of isosurfaces look as
-   * slices do; those of the medium have its colors, unlit, and the opacities of its opacity function, unless
+   * If true, the mapper shows the faces that its clipping planes cut. Off by default. Faces of isosurfaces look as
+   * slices do; faces of the medium have its colors, unlit, and the opacities of its opacity function, unless
    * CapOpacity is off. vtkVolumeMapper's cropping regions have no such faces.
    */
   vtkSetMacro(Capping, bool);
@@ -273,7 +275,7 @@ public:
 
   ///@{
   /**
-   * What is shown of the faces that are cut out of isosurfaces: where values are not below the lowest isovalue
+   * The visible part of the faces that are cut out of isosurfaces: where values are not below the lowest isovalue
    * (ValuesAbove, the default), where they are not above the highest one (ValuesBelow), or all of them. All of the
    * medium's faces are shown.
    */
@@ -304,8 +306,8 @@ public:
 
   ///@{
   /**
-   * Whether the cells' array of the name ColorArray is meant, not the points'. Off by default. A surface has
-   * in each cell that it goes through the color of the cell's value.
+   * If true, ColorArray names an array of the cells, not of the points. Off by default. A surface has in each cell
+   * that it goes through the color of the cell's value.
    */
   vtkSetMacro(ColorArrayOnCells, bool);
   vtkGetMacro(ColorArrayOnCells, bool);
@@ -313,8 +315,8 @@ public:
 
   ///@{
   /**
-   * Whether the color array's values become colors by the lookup table (the default), or are colors: gray,
-   * gray and opacity, red, green and blue, or those and opacity, as vtkMapper takes them directly.
+   * If true (the default), the color array's values become colors by the lookup table. Otherwise they are colors:
+   * gray, gray and opacity, red, green and blue, or those and opacity, as vtkMapper takes them directly.
    */
   vtkSetMacro(MapScalars, bool);
   vtkGetMacro(MapScalars, bool);
@@ -324,11 +326,11 @@ public:
   ///@{
   /**
    * How blocks of a composite dataset look that are not to look like the rest: their color, in place of that of the
-   * surface property and of the color array; their opacity, in place of the property's; a value, by which the lookup
-   * table colors the block while BlockScalarVisibility is on (off by default) and it has no color of its own; and whether
-   * they are shown at all (the default). Blocks are numbered as vtkCompositeDataIterator does (GetCurrentFlatIndex) in this
-   * rank's part of the dataset; a dataset that is one image is block 0. AMR as a whole has the color and the opacity of
-   * block 0; where a block of AMR is hidden, cells of coarser ones are shown.
+   * surface property and of the color array; their opacity, in place of the property's; a value, by which the
+   * lookup table colors the block while BlockScalarVisibility is on (off by default) and it has no color of its
+   * own; and whether they are shown at all (the default). Blocks are numbered as vtkCompositeDataIterator does
+   * (GetCurrentFlatIndex) in this rank's part of the dataset; a dataset that is one image is block 0. All of AMR
+   * has the color and the opacity of block 0; where a block of AMR is hidden, cells of coarser ones are shown.
    */
   void SetBlockColor(unsigned int block, double r, double g, double b);
   void SetBlockOpacity(unsigned int block, double opacity);
@@ -343,9 +345,9 @@ public:
 
   ///@{
   /**
-   * Colors and coefficients of the surfaces; never null. Null makes a new one. With flat interpolation, they are lit by the normals of
-   * the surface that is in each cell; else by smooth ones. Front faces are the sides where values are below the isovalue;
-   * what is culled lets light through, too.
+   * Colors and coefficients of the surfaces; never null. Null makes a new one. With flat interpolation, they are
+   * lit by the normals of the surface that is in each cell; else by smooth ones. Front faces are the sides where
+   * values are below the isovalue; what is culled lets light through, too.
    */
   void SetSurfaceProperty(vtkProperty* property);
   vtkProperty* GetSurfaceProperty() const;
@@ -353,7 +355,8 @@ public:
 
   ///@{
   /**
-   * Colors and coefficients of back faces; null (the default): they are as the others. Opacities of blocks count for both.
+   * Colors and coefficients of back faces; null (the default): they are as the others. Opacities of blocks count
+   * for both.
    */
   void SetBackfaceProperty(vtkProperty* property);
   vtkProperty* GetBackfaceProperty() const;
@@ -379,9 +382,9 @@ public:
 
   ///@{
   /**
-   * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data, and
-   * when they have changed since, those of this rank's, or of the whole image that the pipeline tells of
-   * before it makes it; null where there are none.
+   * Bounds of all ranks' data, without the volume's transform. Until the scene has taken in the data, and when they
+   * have changed since, those of this rank's, or of the whole image that the pipeline announces before it makes it;
+   * null if there are none.
    */
   using vtkVolumeMapper::GetBounds;
   double* GetBounds() VTK_SIZEHINT(6) override;
@@ -403,8 +406,8 @@ public:
 
   ///@{
   /**
-   * Whether the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by
-   * default. In one process only: ranks must make it together, before the first frame.
+   * If true, the mapper makes the renderer's vtkDSMScene when it is first drawn and there is none; on by default.
+   * In one process only: ranks must make it together, before the first frame.
    */
   vtkSetMacro(MakesScene, bool);
   vtkGetMacro(MakesScene, bool);
@@ -413,9 +416,9 @@ public:
 
   ///@{
   /**
-   * What vtkGPUVolumeRayCastMapper is told about its samples and its graphics card, and vtkAMRVolumeMapper about the
-   * uniform grid that it resamples AMR to, and about the mapper that shows it. Kept, and without effect: a ray finds the
-   * exact place of the surface, memory is vtkDSMMemoryOptions' matter, and AMR is shown as it is, at all of its levels.
+   * Settings of vtkGPUVolumeRayCastMapper (samples, graphics card) and of vtkAMRVolumeMapper (the uniform grid that
+   * it resamples AMR to, the mapper that shows it). The mapper keeps them, and they have no effect: a ray finds the
+   * exact place of the surface, vtkDSMMemoryOptions limits the memory, and AMR is shown at all of its levels.
    */
   enum RenderModes
   {
@@ -459,8 +462,8 @@ public:
   vtkMTimeType GetMTime() override;
 
   /**
-   * Of a mapper of this class, all that was set, its input, and, in common with it, its table of colors, properties and
-   * options; of other volume mappers, what they have as well.
+   * Copies all settings and the input of a mapper of this class, and shares its table of colors, properties and
+   * options; copies from other volume mappers what they have as well.
    */
   void ShallowCopy(vtkAbstractMapper* mapper) override;
 

@@ -17,7 +17,8 @@ class vtkPlaneCollection;
 class vtkProperty;
 class vtkScalarsToColors;
 
-/// Single values among the settings of a vtkDSMVolumeMapper: name, type and default, in the order in which they are printed.
+/// Single values among the settings of a vtkDSMVolumeMapper: name, type and default, in the order in which they are
+/// printed.
 #define VTK_DSM_VOLUME_SETTINGS(X)                                                                 \
   X(IsoArray, std::string, "")                                                                     \
   X(IsoArrayOnCells, bool, false)                                                                  \
@@ -49,7 +50,7 @@ class vtkScalarsToColors;
   X(MemoryOptions, vtkSmartPointer<vtkDSMMemoryOptions>, {})                                       \
   X(MakesScene, bool, true)                                                                        \
   VTK_DSM_KEPT_SETTINGS(X)
-/// Those of vtkGPUVolumeRayCastMapper and of vtkAMRVolumeMapper that are kept without effect.
+/// Settings of vtkGPUVolumeRayCastMapper and vtkAMRVolumeMapper. The mapper keeps them without effect.
 #define VTK_DSM_KEPT_SETTINGS(X)                                                                   \
   X(AutoAdjustSampleDistances, vtkTypeBool, 1)                                                     \
   X(LockSampleDistanceToInputSpacing, vtkTypeBool, 0)                                              \

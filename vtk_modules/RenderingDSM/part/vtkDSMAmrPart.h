@@ -12,9 +12,9 @@
 
 class vtkImageData;
 
-/// Adaptively refined blocks. Levels are found by the blocks' spacing. Cells that a finer block covers are not shown, nor are
-/// ghost and blanked cells. Where no finer block is there, a cell that is marked as refined is shown. Of blocks of a level that
-/// overlap, the one of the lowest flat index counts, on whatever rank it is.
+/// Adaptively refined blocks. Levels are found by the blocks' spacing. Cells that a finer block covers are not
+/// shown, nor are ghost and blanked cells. If there is no finer block, a cell that is marked as refined is shown.
+/// If blocks of a level overlap, the one of the lowest flat index counts, on whatever rank it is.
 class vtkDSMAmrPart final : public vtkDSMLevelPart
 {
 public:

@@ -17,8 +17,8 @@
 
 class vtkDataSet;
 
-/// Images and rectilinear grids of all ranks, joined to lattices. Methods documented as collective need every rank. Failures
-/// are dsm::Error, the same on every rank.
+/// Images and rectilinear grids of all ranks, joined to lattices. Methods documented as collective need every rank.
+/// Failures are dsm::Error, the same on every rank.
 class vtkDSMJoinedImages
 {
 public:
@@ -33,8 +33,8 @@ public:
   /// Collective. `images`: this rank's, which have points.
   vtkDSMJoinedImages(std::shared_ptr<vtkDSMRankGroup> group, std::vector<Image> images);
 
-  /// Collective. Blocks that differ in the shown arrays at points that they have in common become lattices of their own.
-  /// Returns whether any have points in common.
+  /// Collective. Blocks that differ in the shown arrays at points that they have in common become lattices of their
+  /// own. Returns whether any have points in common.
   bool SeparateBlocks(const vtkDSMImageArrays& arrays, const std::vector<Choice>& shown);
   /// Local. Returns a part for each lattice.
   std::vector<std::unique_ptr<vtkDSMPart>> CreateParts() const;

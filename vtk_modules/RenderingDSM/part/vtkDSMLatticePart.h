@@ -55,8 +55,8 @@ private:
   /// Collective: the file that has all of the values, or null. `type`: of the values.
   std::unique_ptr<vtkDSMFileVolume> FindFile(const Request& request, const std::vector<Info>& infos,
     const bricks::BrickLattice& lattice) const;
-  /// Collective: the lattice is in a file. Its bricks come to memory when rays meet them. `old`: what is there of another
-  /// step, or null; bricks that are equal stay in memory.
+  /// Collective: the lattice is in a file. Its bricks come to memory when rays meet them. `old`: what is there of
+  /// another step, or null; bricks that are equal stay in memory.
   void PublishFile(const vtkDSMFileVolume& file, bool isCoarser, const Request& request,
     const std::string& what, Values& values, std::shared_ptr<Values> old) const;
   /// Collective: the old bricks, with what the pieces hold now.
@@ -67,7 +67,7 @@ private:
   /// Local. The field without its bricks; null where no piece has the array.
   std::shared_ptr<Values> CreateValues(
     const Request& request, const std::vector<Info>& infos) const;
-  /// Local. Whether some cells have no value in an array, whatever the values are.
+  /// Local. Returns whether some cells have no value in an array, whatever the values are.
   bool HasGaps(const std::vector<Info>& infos) const;
   /// Local. This rank's pieces.
   Sources CreateSources(const bricks::BrickLattice& bricks, const Choice& choice) const;

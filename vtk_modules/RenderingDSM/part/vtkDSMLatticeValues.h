@@ -31,8 +31,8 @@ public:
   std::shared_ptr<bricks::VoxelField> Field;
   dsm::FragmentDigests Digests; ///< digests of this rank's contributions
   ///@{
-  /// Of a lattice in a file, instead: the file, the source of its bricks and, if there are several time steps, the digests of
-  /// these bricks (else null). A coarser level has no file.
+  /// Of a lattice in a file, instead: the file, the source of its bricks and, if there are several time steps, the
+  /// digests of these bricks (else null). A coarser level has no file.
   std::shared_ptr<const vtkDSMFileVolume> File;
   std::shared_ptr<dsm::ReadingSource> Source;
   std::shared_ptr<const vtkDSMFileVolume::Digests> Bricks;

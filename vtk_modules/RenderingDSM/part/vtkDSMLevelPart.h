@@ -24,7 +24,7 @@ public:
   /// A cell of a piece.
   struct Cell
   {
-    int Piece = -1; ///< index into the part's own pieces; -1: the cell is no leaf of this rank
+    int Piece = -1; ///< index into the part's own pieces; -1: the cell is not a leaf of this rank
     vtkIdType Id = -1;
   };
   /// Reads which cells of this rank's pieces are the cells of cube `number` of GetCubes: Edge^3, x fastest.
@@ -45,8 +45,8 @@ public:
   };
   using OwnPieces = std::vector<Piece>;
 
-  /// Collective. `pieces`: this rank's. AMR is one part; hyper tree grids are one where their roots are on one lattice and do
-  /// not overlap.
+  /// Collective. `pieces`: this rank's. AMR is one part; hyper tree grids are one where their roots are on one
+  /// lattice and do not overlap.
   static std::vector<std::unique_ptr<vtkDSMPart>> Create(
     const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces);
   ~vtkDSMLevelPart() override;

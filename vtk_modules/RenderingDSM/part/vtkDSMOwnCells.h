@@ -22,8 +22,8 @@
 class vtkDataObject;
 class vtkDataSet;
 
-/// Cells of this rank's datasets that isosurfaces meet, in their order, with values from published bricks of voxels. One
-/// thread.
+/// Cells of this rank's datasets that isosurfaces meet, in their order, with values from published bricks of
+/// voxels. One thread.
 class vtkDSMOwnCells
 {
 public:
@@ -56,9 +56,10 @@ protected:
   explicit vtkDSMOwnCells(Datasets datasets);
   /// Adds to Ids the bricks that this rank's cells are in.
   virtual void AddBricks(const rt::IsovaluePredicate& mayHold) = 0;
-  /// The next cells are of brick Ids[number], which has that many on each axis.
+  /// The next cells are of brick Ids[number], which has so many on each axis.
   virtual void Begin(std::size_t number, const bricks::Index3& cells) = 0;
-  /// Completes a cell, except for its values. `in`: its index in the brick. Returns false for a cell that is not shown, or is another rank's.
+  /// Completes a cell, except for its values. `in`: its index in the brick. Returns false for a cell that is not
+  /// shown, or is another rank's.
   virtual bool Complete(const bricks::Index3& in, Cell& cell) const = 0;
 
   /// Calls `visit(corner, offset)`.

@@ -21,9 +21,9 @@
 class vtkAbstractArray;
 class vtkBoundingBox;
 
-/// A piece of a dataset that is shown as one field: a lattice, or levels that lie within one another. Its data may be on any
-/// ranks; every rank has the same parts in the same order. Keeps this rank's data alive, without a copy. Methods documented
-/// as collective need every rank. Failures are dsm::Error, the same on every rank.
+/// A piece of a dataset that is shown as one field: a lattice, or levels that lie within one another. Its data may
+/// be on any ranks; every rank has the same parts in the same order. Keeps this rank's data alive, without a copy.
+/// Methods documented as collective need every rank. Failures are dsm::Error, the same on every rank.
 class vtkDSMPart
 {
 public:
@@ -61,12 +61,13 @@ public:
   /// Local: what each of this rank's datasets has of an array.
   virtual std::vector<Info> FindArrays(const Choice& choice) const = 0;
 
-  /// Collective. Cuts an array into bricks and sends them to their owners; null where no piece has it. `infos`: FindArrays of
-  /// all ranks, in rank order. `old`: values for which MayTakeOver is true on all ranks, or null. Takes these over or releases
-  /// them before memory is needed for the new ones.
+  /// Collective. Cuts an array into bricks and sends them to their owners; null where no piece has it. `infos`:
+  /// FindArrays of all ranks, in rank order. `old`: values for which MayTakeOver is true on all ranks, or null.
+  /// Takes these over or releases them before memory is needed for the new ones.
   virtual std::shared_ptr<vtkDSMPartValues> Publish(const Request& request,
     const std::vector<Info>& infos, std::shared_ptr<vtkDSMPartValues> old) const = 0;
-  /// Local: whether the memory of values may be used for others of the same array. Nobody but one publication may have them.
+  /// Local: whether the memory of values may be used for others of the same array. Only one publication may have
+  /// them.
   virtual bool MayTakeOver(const vtkDSMPartValues& old) const;
   /// Collective. Values of a coarser level of detail, the first of which is 1; null, on all ranks, where there is none.
   /// `finest`: the result of Publish for the same array.

@@ -13,9 +13,9 @@
 #include <utility>
 #include <variant>
 
-/// Published values of one array on a vtkDSMPart, at one level of detail. All scenes that show them share them; they leave the
-/// store with their last user, which must happen in the same order on every rank. All arrays of a part have the same kind of
-/// field.
+/// Published values of one array on a vtkDSMPart, at one level of detail. All scenes that show them share them;
+/// they leave the store with their last user, which must happen in the same order on every rank. All arrays of a
+/// part have the same kind of field.
 class vtkDSMPartValues
 {
 public:
@@ -45,8 +45,8 @@ public:
   virtual bricks::SurveyedBricks GetSurveyed() const = 0;
 
   ///@{
-  /// The slices that can be chosen by an index: their number along each axis, and where they are if their distances differ
-  /// (else null).
+  /// The slices that can be chosen by an index: their number along each axis, and where they are if their distances
+  /// differ (else null).
   virtual bricks::Index3 CountSlices() const = 0;
   virtual const bricks::GridPlanes* GetPlanes() const { return nullptr; }
   ///@}

@@ -40,7 +40,8 @@ void ForEachTree(vtkHyperTreeGrid* grid, const Visit& visit)
   }
 }
 
-/// Calls `visit(level, cell, id)` for the leaves of a grid that are shown: cells of their level, and the number of their values.
+/// Calls `visit(level, cell, id)` for the leaves of a grid that are shown: cells of their level, and the number of
+/// their values.
 class LeafWalk
 {
 public:

@@ -12,7 +12,8 @@
 
 class vtkHyperTreeGrid;
 
-/// Hyper tree grids in three dimensions, whose roots are on one lattice, equally spaced. Masked and ghost cells are not shown.
+/// Hyper tree grids in three dimensions, whose roots are on one lattice, equally spaced. Masked and ghost cells are
+/// not shown.
 class vtkDSMTreePart final : public vtkDSMLevelPart
 {
 public:
@@ -20,8 +21,9 @@ public:
   vtkDSMTreePart(const std::shared_ptr<vtkDSMRankGroup>& group, const OwnPieces& pieces);
   ~vtkDSMTreePart() override;
 
-  /// Collective. Returns this rank's grids sorted into those that are one; some have none on this rank. Grids whose roots
-  /// are on one lattice are one if they are pieces of the same dataset, or if there is no root where several have a tree.
+  /// Collective. Returns this rank's grids sorted into those that are one; some have none on this rank. Grids whose
+  /// roots are on one lattice are one if they are pieces of the same dataset, or if there is no root where several
+  /// have a tree.
   static std::vector<OwnPieces> Join(dsm::Messenger& messenger, const OwnPieces& pieces);
 
 private:
@@ -42,8 +44,8 @@ private:
   /// Finds where the first root of a grid is on the lattice of another one's. Nothing where it is not on it.
   static std::optional<bricks::Index3> FindFirst(const Roots& roots, const Roots& other);
   void Place(const std::vector<Roots>& all, int firstOwn);
-  /// Collective. Some sources make trees on several ranks when they are asked for ghost cells, and do not mark them. Of equal
-  /// trees, the first one counts.
+  /// Collective. Some sources make trees on several ranks when they are asked for ghost cells, and do not mark
+  /// them. The first of equal trees counts.
   void FindRepeated(int firstOwn);
 
   void AddPlaces(bricks::ByteHash& hash) const override;

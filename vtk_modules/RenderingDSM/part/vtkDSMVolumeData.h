@@ -14,9 +14,9 @@
 
 class vtkDataObject;
 
-/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, sorted into the parts that are
-/// shown. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank without data takes
-/// part. Failures are dsm::Error, the same on every rank.
+/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, sorted into the parts
+/// that are shown. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank
+/// without data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
 public:
@@ -36,10 +36,10 @@ public:
   /// Which arrays are to be shown, of those that there are.
   using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
 
-  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite dataset of any
-  /// but AMR, whose other blocks are left out, or null; `looks` are of its blocks.
-  /// Blocks that continue one another are taken for one volume, where the arrays that `choose` names agree at the points
-  /// that the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
+  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite
+  /// dataset of any but AMR, whose other blocks are left out, or null; `looks` are of its blocks. Blocks that
+  /// continue one another are taken for one volume, where the arrays that `choose` names agree at the points that
+  /// the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
     vtkDataObject* original, const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
@@ -49,14 +49,14 @@ public:
   /// The same on every rank.
   const std::vector<std::unique_ptr<vtkDSMPart>>& GetParts() const { return this->Parts; }
   const vtkDSMImageArrays& GetArrays() const { return this->Arrays; }
-  /// Local, reads the data. Of all that this rank's part of a field depends on: equal only where Publish would make
-  /// the same again.
+  /// Local, reads the data. Returns a hash of all that this rank's part of a field depends on: equal only if
+  /// Publish would make the same again.
   std::uint64_t HashContent(const Choice& choice) const;
   /// Returns the bounds of all ranks' pieces; uninitialized bounds (min > max) if there are none.
   void GetBounds(double bounds[6]) const;
 
-  /// Collective. Publishes an array of all parts, or finds the publication of the same values by another scene. The values
-  /// leave the store when their last user releases them, which must happen in the same order on every rank.
+  /// Collective. Publishes an array of all parts, or finds the publication of the same values by another scene. The
+  /// values leave the store when their last user releases them, which must happen in the same order on every rank.
   /// `old` (may be null) is taken over (MayTakeOver): then only bricks that differ are built and sent again.
   std::shared_ptr<const Publication> Publish(
     const vtkDSMPart::Request& request, std::shared_ptr<const Publication> old = nullptr) const;
@@ -64,8 +64,8 @@ public:
   /// so.
   bool MayTakeOver(const std::shared_ptr<const Publication>& old) const;
 
-  /// Collective. The coarser levels of what was published for the same request; none where a part has none. Room for their
-  /// tables is what they take: they give way to nothing, and nothing gives way to them.
+  /// Collective. The coarser levels of what was published for the same request; none where a part has none. Room
+  /// for their tables is what they take: they give way to nothing, and nothing gives way to them.
   std::shared_ptr<const Coarser> PublishCoarser(
     const Publication& finest, const vtkDSMPart::Request& request) const;
 

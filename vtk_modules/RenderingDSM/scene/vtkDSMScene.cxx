@@ -140,7 +140,8 @@ void vtkDSMScene::DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper)
   }
   const vtkSmartPointer<vtkDSMScene> scene = ForRenderer(renderer);
   scene->Self->Keeper = scene;
-  // Too late for this frame: what is opaque may be drawn already, and parts of assemblies are where these have put them.
+  // Too late for this frame: what is opaque may be drawn already, and parts of assemblies are where these have put
+  // them.
   scene->Self->DrawsAgain = true;
 }
 
@@ -462,7 +463,7 @@ bool vtkDSMScene::TraceFrame()
   {
     member.State->ReportMessages(!self.Group || self.Group->GetMessenger().GetRank() == 0);
   }
-  // One that other settings do not mend is told again: whoever has changed them shall know.
+  // Report the failure again after settings have changed, so that the user sees that it remains.
   const unsigned version = self.Group ? self.Group->GetSettingsVersion() : 0;
   if (!failure.empty() && (failure != self.Failure || version != self.FailureVersion))
   {

@@ -3,19 +3,18 @@
  * @class   vtkDSMScene
  * @brief   traces all volumes and actors of a renderer that have one of our mappers, once a frame
  *
- * One for each renderer. Hears the renderer's StartEvent with priority -1, after the camera has been
- * synchronized between the ranks, and then, on all ranks at once, takes in data that changed, traces
- * the frame, and gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every
- * rank that renders must hold the scene, also one that has no data; a process that only displays
- * (ParaView's client) must not.
+ * One for each renderer. Observes the renderer's StartEvent with priority -1, after the camera has been
+ * synchronized between the ranks. Then, on all ranks at once, it takes in data that changed, traces the frame, and
+ * gives it to its vtkDSMFrameProp, which draws it when the renderer comes to it. Every rank that renders must hold
+ * the scene, also one that has no data; a process that only displays (ParaView's client) must not.
  *
  * Usage: `vtkSmartPointer<vtkDSMScene> scene = vtkDSMScene::ForRenderer(renderer)`, kept for as long
  * as they shall be drawn; add vtkVolumes that have a vtkDSMVolumeMapper, and vtkActors that have a
  * vtkDSMPolyDataMapper, to the renderer as usual. Light and shadow go across all of them. In one process
  * the mappers make a scene where there is none, and the renderer keeps it.
  *
- * Failures are reported with vtkErrorMacro, once for each change of state or of the memory's settings, on every rank; the picture
- * then lacks what could not be drawn, and the application goes on.
+ * Failures are reported with vtkErrorMacro, once for each change of state or of the memory's settings, on every
+ * rank; the picture then lacks what could not be drawn, and the application goes on.
  */
 
 #ifndef vtkDSMScene_h
@@ -50,22 +49,22 @@ public:
 
   ///@{
   /**
-   * The renderer's scene, made when there is none. It lives as long as somebody holds it. The second is
-   * for wrapped languages, and what it returns is the caller's to delete: VTK 9.1 wraps no smart pointers. Null, with
-   * a warning, without a renderer.
+   * Returns the renderer's scene, and makes one if there is none. It lives as long as any reference to it.
+   * NewForRenderer is for wrapped languages, whose callers have to delete the result: VTK 9.1 does not wrap smart
+   * pointers. Null, with a warning, without a renderer.
    */
   VTK_WRAPEXCLUDE static vtkSmartPointer<vtkDSMScene> ForRenderer(vtkRenderer* renderer);
   /**
-   * The renderer's scene if there is one, else null.
+   * Returns the renderer's scene; null if there is none.
    */
   static vtkDSMScene* Find(vtkRenderer* renderer);
   VTK_NEWINSTANCE static vtkDSMScene* NewForRenderer(vtkRenderer* renderer);
   ///@}
 
   /**
-   * For a mapper that is asked to draw: where the renderer has no scene, makes one that ends with the
-   * renderer, and has the frame drawn again when it ends. With several processes this is an error, which is reported once
-   * for each renderer: other ranks may not be drawing.
+   * For a mapper that has to draw in a renderer without a scene: makes a scene that ends with the renderer, and has
+   * the frame drawn again at its end. With several processes this is an error, which is reported once for each
+   * renderer: other ranks may not be drawing.
    */
   static void DrawWithoutScene(vtkRenderer* renderer, vtkObject* mapper);
 
@@ -85,65 +84,65 @@ public:
   vtkDSMLightOptions* GetLightOptions() const;
 
   /**
-   * How the frame reaches the picture. By default each rank draws the tiles that it traced, color
-   * and depth, and the application composites by depth.
+   * Lets each rank draw the tiles that it traced, color and depth, for an application that composites by depth. The
+   * default.
    */
   void DeliverTiles();
 
   /**
-   * Every rank gets the whole frame and draws it. For an application that shows one rank's window
-   * and composites nothing. Same call on every rank.
+   * Lets every rank get the whole frame and draw it, for an application that shows one rank's window and composites
+   * nothing. Same call on every rank.
    */
   void DeliverEverywhere();
 
   /**
-   * Every rank gets the whole frame and draws its depth; color only where `drawsColor`, asked once a
-   * frame, says so. For an application that blends the ranks' pictures in order: the farthest rank
-   * draws the color, and what lies behind it is hidden on the others. Same call on every rank.
+   * Lets every rank get the whole frame and draw its depth. A rank draws color only if `drawsColor`, which is
+   * called once a frame, returns true. For an application that blends the ranks' pictures in order: the farthest
+   * rank draws the color, and the others hide objects behind it. Same call on every rank.
    */
   void DeliverEverywhere(std::function<bool(vtkCamera*)> drawsColor);
 
   /**
-   * The same for an application in which each rank draws a part of space of its own: surfaces that
-   * other objects may be seen through are drawn, one by one, by the rank that `drawsPlace` says it
-   * for, asked for places in world coordinates; exactly one rank must say so. Then translucent
-   * surfaces of this scene and whatever else the renderer shows are in right order. `drawsColor` is
-   * asked for opaque ones.
+   * The same for an application in which each rank draws its own part of space. Translucent surfaces are drawn, one
+   * by one, by the rank whose `drawsPlace` returns true for their place (world coordinates); exactly one rank must
+   * return true. Then translucent surfaces of this scene and all other objects of the renderer are in the right
+   * order. `drawsColor` applies to opaque surfaces.
    */
   void DeliverByPlace(std::function<bool(vtkCamera*)> drawsColor,
     std::function<bool(const double place[3])> drawsPlace);
 
   /**
-   * Makes a picture without a window, and so without OpenGL, a display, a graphics card or EGL: what our mappers
-   * show in the renderer, from its active camera (clipping range included), with its lights, of which there is a
-   * headlight where there are none, and with all samples. `image` gets `width` x `height` points, row 0 the lowest,
-   * with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1 where nothing
-   * is. Colors lie over the renderer's background, or, if `transparent`, have the opacity of what is shown, and are
-   * not multiplied by it. What others draw in the renderer is left out. The pixels are those that a window of this
-   * size shows; how the frame reaches windows makes no difference. A renderer without a window needs no more than
-   * VTK's libraries.
+   * Makes a picture without a window, and so without OpenGL, a display, a graphics card or EGL. It shows all props
+   * of the renderer that have this module's mappers, from its active camera (clipping range included), with its
+   * lights, or a headlight if it has none, and with all samples. `image` gets `width` x `height` points, row 0 the
+   * lowest, with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1
+   * where nothing is. Colors lie over the renderer's background, or, if `transparent`, have the opacity of what is
+   * shown, and are not multiplied by it. Props with other mappers are left out. The pixels are those that a window
+   * of this size shows; how the frame reaches windows makes no difference. A renderer without a window needs no
+   * more than VTK's libraries.
    *
-   * Collective: every rank calls it with the same size, also one that has no data. Each gets the whole picture, unless
-   * its `image` is null. False, with an error as for a frame, where there is none; the same on every rank.
+   * Collective: every rank calls it with the same size, also one that has no data. Each gets the whole picture,
+   * unless its `image` is null. False, with an error as for a frame, if that fails; the same on every rank.
    */
   bool TraceImage(int width, int height, vtkImageData* image, bool transparent = false);
 
   ///@{
   /**
-   * Makes the triangles of the isosurfaces that a mapper shows in the renderer, from the values that pictures are traced
-   * from: on any number of ranks, and around missing values, they are where the picture has surfaces. `surfaces`, which is
-   * empty, gets a vtkPolyData for each image, block of AMR or hyper tree grid of this rank, with the triangles in its own
-   * cells, ghost cells excluded, in the data's coordinates. Their cells have vtkOriginalCellIds, and their points
-   * vtkOriginalPointIds, the nearest points of the dataset (of a hyper tree grid: -1); of a composite dataset, both have
-   * vtkCompositeIndex. For exports they have normals and the array that colors the surface: as in the dataset, or, of
-   * AMR and hyper tree grids, the mapped component at the points.
+   * Makes the triangles of the isosurfaces that a mapper shows in the renderer, from the values that pictures are
+   * traced from. So they lie where the picture has surfaces, also around missing values, on any number of ranks.
+   * `surfaces`, which is empty, gets a vtkPolyData for each image, block of AMR or hyper tree grid of this rank,
+   * with the triangles in its own cells, ghost cells excluded, in the data's coordinates. Their cells have
+   * vtkOriginalCellIds, and their points vtkOriginalPointIds, the nearest points of the dataset (of a hyper tree
+   * grid: -1); of a composite dataset, both have vtkCompositeIndex. For exports they have normals and the array
+   * that colors the surface: as in the dataset, or, for AMR and hyper tree grids, the mapped component at the
+   * points.
    *
-   * Where levels of AMR or trees meet, triangles of both sides may leave narrow gaps. For selections, hyper tree grids have
-   * no triangles: VTK extracts none of their cells.
+   * Where levels of AMR or trees meet, triangles of both sides may leave narrow gaps. For selections, hyper tree
+   * grids have no triangles: VTK extracts none of their cells.
    *
-   * Collective, between frames. False, with an error on every rank, when that fails, also if any rank would have more
-   * than MostTriangles, or, for a selection, an image more than MostCellsOfSelection cells: ParaView takes 10 bytes or
-   * more for each of its cells.
+   * Collective, between frames. Returns false, with an error on every rank, if that fails, or if any rank would
+   * have more than MostTriangles, or, for a selection, an image more than MostCellsOfSelection cells: ParaView
+   * takes 10 bytes or more for each of its cells.
    */
   bool ExtractIsosurfaces(vtkAlgorithm* mapper, bool forSelection, vtkMultiBlockDataSet* surfaces);
   static constexpr vtkIdType MostTriangles = 10'000'000;
@@ -151,18 +150,17 @@ public:
   ///@}
 
   /**
-   * While it is hidden the scene neither traces nor draws, and keeps what it has: for renders that are
-   * not for the eye, such as those of a selection. Same value on every rank.
+   * A hidden scene neither traces nor draws, and keeps its data: for renders that the user does not see, such as
+   * those of a selection. Same value on every rank.
    */
   void SetHidden(bool hidden);
 
   ///@{
   /**
-   * Samples of each pixel that one render adds to the picture as long as camera, data and look stay
-   * as they are, until it has as many as GetLightOptions() asks for; 0 (the default):
-   * all at once. An interactive application takes 1, and renders again while IsRefined() is false.
-   * While the window wants interactive rates (its DesiredUpdateRate is 1 or more), it is 1.
-   * Same value on every rank.
+   * Number of samples of each pixel that one render adds to the picture while camera, data and look do not change,
+   * until it has the number of GetLightOptions(); 0 (the default): all at once. An interactive application takes 1,
+   * and renders again while IsRefined() is false. While the window wants interactive rates (its DesiredUpdateRate
+   * is 1 or more), it is 1. Same value on every rank.
    */
   void SetSamplesPerFrame(int samples);
   int GetSamplesPerFrame() const;
@@ -170,8 +168,8 @@ public:
 
   ///@{
   /**
-   * Seconds that a render may take that adds to a picture: where SamplesPerFrame is set, and takes
-   * less by the render before, it adds more samples. 0 (the default): never. Same value on every rank.
+   * Time in seconds that a render may take that adds samples to a picture. If SamplesPerFrame takes less, by the
+   * time of the last render, the render adds more samples. 0 (the default): never. Same value on every rank.
    */
   void SetSecondsPerFrame(double seconds);
   double GetSecondsPerFrame() const;
@@ -179,9 +177,9 @@ public:
 
   ///@{
   /**
-   * While the window wants interactive rates, one pixel is traced for a square of pixels, which it
-   * fills: of this edge at least, and of up to 8 where the frame would take longer than about 0.07 s by
-   * what the last one took. 0 (the default): every pixel is traced. Same value on every rank.
+   * While the window wants interactive rates, one pixel is traced for a square of pixels, which it fills. The
+   * square has this edge at least, and up to 8 if the frame would take longer than about 0.07 s, by the time of the
+   * last one. 0 (the default): every pixel is traced. Same value on every rank.
    */
   void SetInteractiveReduction(int edge);
   int GetInteractiveReduction() const;
@@ -189,9 +187,8 @@ public:
 
   ///@{
   /**
-   * Whether every frame is of the finest data, also while the window wants interactive rates and
-   * vtkDSMMemoryOptions lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every
-   * rank.
+   * Traces every frame from the finest data, also while the window wants interactive rates and vtkDSMMemoryOptions
+   * lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every rank.
    */
   void SetAlwaysFinest(bool finest);
   bool GetAlwaysFinest() const;
@@ -205,31 +202,31 @@ public:
   void SetTileDisplay(int columns, int rows, int gapX = 0, int gapY = 0);
 
   /**
-   * Whether the last picture has all the samples that were asked for; the same on every rank. Not so
-   * either when the last render was aborted: while it traces, the window of rank 0 is asked for its
-   * abort status (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last
-   * picture; what was traced of samples that are added to it is not lost.
+   * Returns whether the last picture has all the samples that were asked for; the same on every rank. False, too,
+   * after a render that was aborted: while it traces, the window of rank 0 is asked for its abort status
+   * (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last picture; what was traced
+   * of samples that are added to it is not lost.
    */
   bool IsRefined() const;
 
   /**
-   * Samples of each pixel that the last picture has; 0 without one. The same on every rank.
+   * Returns the number of samples of each pixel in the last picture; 0 without one. The same on every rank.
    */
   int GetNumberOfSamples() const;
 
   /**
-   * Samples of each pixel that the objects of the last picture ask for; 0 without one.
+   * Returns the number of samples of each pixel that the objects of the last picture request; 0 without one.
    */
   int GetNumberOfSamplesWanted() const;
 
   /**
-   * Whether a frame is being made: from taking in data, of which the mappers tell the progress, to the
-   * last tile.
+   * Returns whether a frame is being made: from taking in data, whose progress the mappers report, to the last
+   * tile.
    */
   bool IsTracing() const;
 
   /**
-   * Of the last frame; the same on every rank.
+   * Returns the statistics of the last frame; the same on every rank.
    */
   vtkDSMStatistics* GetStatistics() const;
 

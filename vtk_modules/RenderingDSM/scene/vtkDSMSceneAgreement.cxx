@@ -52,8 +52,8 @@ T Read(const std::vector<std::byte>& bytes, std::size_t at = 0)
   return value;
 }
 
-/// Adds a picture of depths, behind `first` others in a record, to those of each pixel's surfaces: the nearest first, and
-/// at most vtkDSMDepthReader::MaxSurfaces of them.
+/// Adds a picture of depths, behind `first` others in a record, to those of each pixel's surfaces: the nearest
+/// first, and at most vtkDSMDepthReader::MaxSurfaces of them.
 void AddCuts(const std::vector<std::byte>& record, std::size_t first, std::size_t pixels,
   std::vector<float>& cuts)
 {
@@ -256,8 +256,8 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   return bytes;
 }
 
-/// Throws, on every rank alike, for a camera that differs by more than rounding, or for a picture that is to be delivered
-/// in another way.
+/// Throws, on every rank alike, for a camera that differs by more than rounding, or for a picture that is to be
+/// delivered in another way.
 void vtkDSMScene::Internals::CheckViews(const std::vector<View>& views)
 {
   for (std::size_t rank = 0; rank < views.size(); ++rank)
@@ -281,10 +281,9 @@ void vtkDSMScene::Internals::TakeLights(
   }
 }
 
-/// Takes rank 0's view: the camera that came from there is not always the same to the last
-/// bit, and ParaView's other ranks have no background, which gives light and which mirrored rays see where
-/// they meet nothing.
-/// Surfaces are kept apart when any rank has something that may be between them. Returns how many levels below the finest
+/// Takes rank 0's view: the camera that came from there is not always the same to the last bit, and ParaView's
+/// other ranks have no background, which gives light and which mirrored rays see where they meet nothing. Surfaces
+/// are kept apart when any rank has something that may be between them. Returns how many levels below the finest
 /// may stand in.
 int vtkDSMScene::Internals::AgreeOnView(
   const std::vector<View>& views, rt::Scene& scene, rt::FrameRequest& request) const
@@ -306,8 +305,8 @@ int vtkDSMScene::Internals::AgreeOnView(
   return coarser;
 }
 
-/// Collective. Rays end at what is opaque of what this, or any other, rank draws itself; media are cut into layers at what
-/// is translucent, where `cutsMedia`.
+/// Collective. Rays end at what is opaque of what this, or any other, rank draws itself; media are cut into layers
+/// at what is translucent, where `cutsMedia`.
 void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia)
 {
   const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
@@ -356,8 +355,8 @@ void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia
   }
 }
 
-/// Collective. As long as no rank has anything new, the ranks agree on the frame with one record, and on how it went with
-/// another. `isOver`: see dsm::Messenger::RunStep.
+/// Collective. As long as no rank has anything new, the ranks agree on the frame with one record, and on how it
+/// went with another. `isOver`: see dsm::Messenger::RunStep.
 void vtkDSMScene::Internals::Draw(bool& isOver)
 {
   const char* const what = "Preparing the frame";

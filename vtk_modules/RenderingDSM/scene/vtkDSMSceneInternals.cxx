@@ -26,7 +26,7 @@ namespace
 /// Frames per second; an application that wants as many from its window is moving the camera.
 constexpr double InteractiveRate = 1.0;
 
-/// That an interactive frame may take, where its resolution may be lowered, and the lowest one.
+/// Time limit of an interactive frame in seconds, and the largest reduction of its resolution.
 constexpr double InteractiveSeconds = 0.07;
 constexpr int LargestReduction = 8;
 
@@ -170,8 +170,8 @@ std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
   return Describe(outcome);
 }
 
-/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what this rank
-/// draws, as far as it needs no other ranks, when the frame was traced.
+/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what
+/// this rank draws, as far as it needs no other ranks, when the frame was traced.
 rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scene,
   const rt::FrameRequest& request, Offers offers, int coarser, rt::Picture& picture)
 {

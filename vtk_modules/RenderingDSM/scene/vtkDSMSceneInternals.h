@@ -44,13 +44,14 @@ public:
   /// Takes in data that changed, traces the frame, and gives it to the prop; or does nothing, because of
   /// what has failed earlier. Returns why there is no frame, the same on every rank, if there is none.
   std::string MakeFrame(const dsm::FirstFailure& earlier);
-  /// Likewise: takes in data that changed, and adds the isosurfaces of a mapper in this rank's data to `surfaces`. Returns
-  /// why there are none, the same on every rank, if that fails.
+  /// Likewise: takes in data that changed, and adds the isosurfaces of a mapper in this rank's data to `surfaces`.
+  /// Returns why there are none, the same on every rank, if that fails.
   std::string Extract(const dsm::FirstFailure& earlier, vtkAlgorithm* mapper,
     vtkDSMSceneMember::Purpose purpose, vtkMultiBlockDataSet* surfaces);
   /// Nothing is shown.
   void Clear();
-  /// The last picture stays, though the camera may be another: until the frame ends, all of it is what the ranks exchange.
+  /// The last picture stays, though the camera may be another: until the frame ends, all of it is what the ranks
+  /// exchange.
   void ShowWhole() const;
   /// Throws dsm::Error where the target is larger than what memory allows for each of so many ranks of this host.
   void CheckImage(int ranksOnHost) const;
@@ -69,7 +70,7 @@ public:
   vtkWeakPointer<vtkRenderer> Renderer;
   std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
-  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, when nobody but the renderer has it
+  vtkSmartPointer<vtkDSMScene> Keeper; ///< the scene itself, if only the renderer keeps it
   vtkSmartPointer<vtkDSMScene>
     Rendering;                ///< the scene itself, from the start of a render to its end
   bool DrawsAgain = false;    ///< it was made in the middle of a frame

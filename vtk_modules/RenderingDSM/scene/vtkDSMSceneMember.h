@@ -55,21 +55,22 @@ public:
   /// that the ranks share.
   virtual bool NeedsRanks(const vtkDSMRankGroup& group, bool wantsCoarser) const = 0;
 
-  /// Local, also while the scene has not looked at its props: whether what was taken in is of data that are not there
-  /// any more.
+  /// Local, also while the scene has not looked at its props: returns whether the data that were taken in no longer
+  /// exist.
   virtual bool IsOutdated() = 0;
   /// Local, the same on every rank: whether another member, of any scene, has some of this one's bricks.
   virtual bool SharesBlocks(const vtkDSMSceneMember& other) const = 0;
-  /// Collective, before new data are taken in. Where the old ones' bricks are shared by members that are outdated on all
-  /// ranks, these give their bricks up, so that there is room, or that the bricks can be taken over. Returns those members.
+  /// Collective, before new data are taken in. Where the old ones' bricks are shared by members that are outdated
+  /// on all ranks, these give their bricks up, so that there is room, or that the bricks can be taken over. Returns
+  /// those members.
   std::vector<const vtkDSMSceneMember*> FreeOutdated(dsm::Messenger& messenger);
 
   /// Local, in the same order on every rank: retires the bricks; the next Update publishes them again.
   virtual void GiveUpBlocks() = 0;
   virtual bool HasBlocks() const = 0;
 
-  /// Collective. Takes in what is missing: everything when any rank has new data, else what the
-  /// mapper names and is not there yet. What goes wrong is kept as a message.
+  /// Collective. Takes in what is missing: everything when any rank has new data, else what the mapper names and is
+  /// still missing. Failures are kept as messages.
   virtual void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) = 0;
 
   /// Collective, after Update. While they are wanted, the mapper's data are there at coarser levels, too, where
@@ -80,14 +81,14 @@ public:
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
   void SetCoarser(int level) { this->Coarser = level; }
 
-  /// What surfaces are extracted for; see vtkDSMScene::ExtractIsosurfaces.
+  /// Purpose of extracted surfaces; see vtkDSMScene::ExtractIsosurfaces.
   enum class Purpose
   {
     Selection,
     Export
   };
-  /// Collective, after Update: adds the isosurfaces in this rank's data to `surfaces`. Throws the same dsm::Error on every
-  /// rank.
+  /// Collective, after Update: adds the isosurfaces in this rank's data to `surfaces`. Throws the same dsm::Error
+  /// on every rank.
   virtual void ExtractIsosurfaces(vtkDSMRankGroup&, Purpose, vtkMultiBlockDataSet* /*surfaces*/) {}
 
   /// Local: what the prop shows.
@@ -102,8 +103,8 @@ public:
   /// When a frame last showed it; on every rank in the same order.
   vtkMTimeType GetTimeShown() const { return this->Shown.GetMTime(); }
 
-  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells` them; on others
-  /// they reach who observes the error or warning event.
+  /// Reports the messages that are new since the last call. They are the same on every rank, so only one `tells`
+  /// them; on others they reach who observes the error or warning event.
   void ReportMessages(bool tells);
 
 protected:

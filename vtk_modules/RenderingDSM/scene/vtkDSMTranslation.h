@@ -43,9 +43,9 @@ public:
   static rt::ColorMap ToColorMap(
     vtkScalarsToColors* table, vtkPiecewiseFunction* opacity = nullptr);
 
-  /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values are
-  /// from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of the medium, in
-  /// the space of the data.
+  /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values
+  /// are from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of
+  /// the medium, in the space of the data.
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(vtkVolumeProperty* property,
     int component, double weight, double first, double last, double cellLength, double diagonal);
 
@@ -54,12 +54,12 @@ public:
   /// The same functions as colors and opacities of single values.
   static std::shared_ptr<const rt::ColorMap> ToColorMap(
     vtkVolumeProperty* property, int component, double first, double last);
-  /// The color function, as the legend of a property's component shows it, for values of a range,
-  /// with the opacities of the same values or opaque. What is not a number is transparent.
+  /// The color function, as the legend of a property's component shows it, for values of a range, with the
+  /// opacities of the same values or opaque. NaN is transparent.
   static rt::ColorMap ToColorMap(
     vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity);
-  /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds up over `unit` of length. In a mean,
-  /// the values between the two that are `counted` count.
+  /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds
+  /// up over `unit` of length. In a mean, the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,
     double first, double last, const std::array<double, 2>& counted, double unit);
 

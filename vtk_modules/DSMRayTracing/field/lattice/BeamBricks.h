@@ -44,7 +44,8 @@ struct BeamBricks final : ObjectBeam
   }
 };
 
-/// BeamFinder::Prefetch of a beam's bricks, which are a segment's. `addNeighbors`: see the store's Prefetch; may be empty.
+/// BeamFinder::Prefetch of a beam's bricks, which are a segment's. `addNeighbors`: see the store's Prefetch; may be
+/// empty.
 template <class Store>
 bool PrefetchFirst(Store& store, const dsm::BlockSegment& segment, const ObjectBeam& beam,
   std::size_t count,

@@ -8,8 +8,8 @@
 namespace rt
 {
 
-/// Is told what a ray reads of a brick, which is held for as long as the ray is in it: so nothing has to be
-/// done. Who measures what that saves puts something else in its place.
+/// Notified of what a ray reads of a brick. Does nothing: the brick is held for as long as the ray is in it.
+/// Measurements of what that saves put another class in its place.
 template <class Store>
 class BrickAccess
 {

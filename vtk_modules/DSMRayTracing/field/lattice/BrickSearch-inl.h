@@ -67,7 +67,7 @@ struct CrossedCells
   const bool* Forward;
 };
 
-/// Rays of a vector in macrocells that they go through as a whole; as CrossedCells.
+/// Rays of a vector in macrocells that they go through in one step; as CrossedCells.
 template <class D>
 struct PassedMacrocells
 {
@@ -87,9 +87,9 @@ struct PassedMacrocells
 /// FindCrossedNodes). Then rays wait for their next macrocell, or the next cell in it, and those that
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
 ///
-/// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search ends.
-/// If it `TakesMacrocells`, `Pass(const PassedMacrocells<D>&)` gets those that are smooth (PacketPart), and returns the same.
-/// `Planes`: UniformPlanes or StretchedPlanes.
+/// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search
+/// ends. If it `TakesMacrocells`, `Pass(const PassedMacrocells<D>&)` gets those that are smooth (PacketPart), and
+/// returns the same. `Planes`: UniformPlanes or StretchedPlanes.
 template <class D, class Visitor, class Planes = UniformPlanes<D>>
 class BrickSearch
 {
@@ -112,7 +112,7 @@ public:
   {
   }
 
-  /// Those of `rays` whose search ends in the brick.
+  /// Returns the subset of `rays` whose search ends in the brick.
   RayPacket::Mask Search(RayPacket::Mask rays)
   {
     int parts[3];
@@ -415,7 +415,7 @@ private:
     return this->Look.Pass(passed);
   }
 
-  /// Tells what is known of the macrocells that rays are in.
+  /// Describes the macrocells that rays are in.
   template <class Crossed>
   HWY_INLINE void Describe(const Batch& batch, const PacketPart& known, Crossed& crossed) const
   {

@@ -14,9 +14,9 @@
 namespace rt
 {
 
-/// Space leaping over the levels above the bricks: yields, front to back, the bricks on a ray that
-/// may hold what it looks for. Walks each level within the macrocell of the one above, and enters only
-/// those macrocells that may. `Predicate` tells that of a ValueRange; see IsovaluePredicate.
+/// Space leaping over the levels above the bricks: yields, front to back, the bricks on a ray that may hold what it
+/// looks for. Walks each level within the macrocell of the one above, and enters only those macrocells that may.
+/// `Predicate` decides that for a ValueRange; see IsovaluePredicate.
 template <class Predicate, class Ray = GridRay>
 class BrickWalk
 {

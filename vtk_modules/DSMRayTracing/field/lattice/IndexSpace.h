@@ -44,8 +44,8 @@ public:
     return line.Set(&origin.x, &direction.x);
   }
 
-  /// Calls `visit` with the ray as it meets the planes: a GridRay or StretchedRay. Returns what `visit` does; false for a
-  /// ray that cannot be traced.
+  /// Calls `visit` with the ray as it meets the planes: a GridRay or StretchedRay. Returns what `visit` does; false
+  /// for a ray that cannot be traced.
   template <class Visit>
   bool VisitLine(const Ray& ray, const Visit& visit) const
   {

@@ -99,7 +99,7 @@ private:
   ///   RayMask together(packet, open, index, surface, origin): searches a PacketBrick, whose first cell is at `origin`,
   ///     for the isovalue of that index and the rays that are still `open`
   ///
-  /// Both tell of which rays the search ends.
+  /// Both return the rays whose search ends.
   template <class SearchAlone, class SearchSurface>
   RayMask SearchForLight(const Sets& sets, const Ray* rays, RayMask wanted,
     const SearchAlone& alone, const SearchSurface& together) const;

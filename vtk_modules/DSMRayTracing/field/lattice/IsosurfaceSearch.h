@@ -82,8 +82,8 @@ private:
   bool IntersectBricks(const Sets& sets, const Line& line, double enter, double leave, Hit& hit,
     double gradient[3]) const;
 
-  /// Searches the brick of the walk for all isovalues of its range; `hasGradient` tells that the
-  /// gradient was found too, as it is when its samples are all in the brick.
+  /// Searches the brick of the walk for all isovalues of its range; `hasGradient`: the gradient was found too, as
+  /// it is when its samples are all in the brick.
   template <class T, class Line>
   bool IntersectBrick(const Sets& sets, const Line& line, const Walk<Line>& walk, CellHit& cell,
     int& isovalue, double gradient[3], bool& hasGradient) const;

@@ -21,8 +21,8 @@
 namespace rt
 {
 
-/// Finds the largest or smallest value of a lattice that each ray of a batch meets, where cells hold data. What a ray
-/// finds does not depend on its packet. Threads and pins as IsosurfaceSearch.
+/// Finds the largest or smallest value of a lattice that each ray of a batch meets, where cells hold data. A ray's
+/// result does not depend on its packet. Threads and pins as IsosurfaceSearch.
 template <class Store>
 class LatticeExtrema
 {

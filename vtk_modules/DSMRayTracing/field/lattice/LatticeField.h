@@ -44,8 +44,8 @@ struct LatticeField
   template <class Store>
   using Extrema = LatticeExtrema<Store>;
 
-  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible. Where Voxels has Planes, it
-  /// is grid space instead of index space, here and in what is called so below.
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible. Where Voxels has
+  /// Planes, it is grid space instead of index space, here and in what is called so below.
   glm::dmat4 IndexToWorld{ 1.0 };
   /// Its inverse; SetIndexToWorld keeps the two together.
   glm::dmat4 WorldToIndex{ 1.0 };
@@ -81,8 +81,8 @@ struct LatticeField
   }
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a cell of mean size, because hits in its large
-  /// cells are no more exact.
+  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a
+  /// cell of mean size, because hits in its large cells are no more exact.
   double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const;
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;

@@ -23,8 +23,8 @@
 namespace rt
 {
 
-/// Takes batches of rays through a medium whose values are a lattice's. What a ray gets does not depend on its packet.
-/// Threads and pins as IsosurfaceSearch.
+/// Takes batches of rays through a medium whose values are a lattice's. A ray's result does not depend on its
+/// packet. Threads and pins as IsosurfaceSearch.
 template <class Store>
 class LatticeMedia
 {

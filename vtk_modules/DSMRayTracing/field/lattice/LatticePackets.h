@@ -19,8 +19,8 @@
 namespace rt
 {
 
-/// Makes `moved` move along all three axes, as rays of a packet do. A ray that does not, moves so little that it stays at
-/// its place for all that can be seen. Returns the sides to which the ray moves, a bit for each axis.
+/// Makes `moved` move along all three axes, as rays of a packet do. A ray that does not, moves so little that it
+/// stays at its place for all that can be seen. Returns the sides to which the ray moves, a bit for each axis.
 inline int MoveAlongAll(
   const IndexSpace& space, const glm::dmat4& indexToWorld, const Ray& ray, Ray& moved)
 {
@@ -47,10 +47,10 @@ inline int MoveAlongAll(
   return side;
 }
 
-/// Divides the `wanted` rays of a batch into packets of rays whose directions have the same signs, or of a
-/// single ray. For each, fills `packet`, in the index space with so many cells, and calls `visit(bricks)`, which returns some
-/// of the rays; the function returns all of these. `beam`: contains all of the rays; null, or not usable: `find(RayBeam)`
-/// returns the bricks for each packet.
+/// Divides the `wanted` rays of a batch into packets of rays whose directions have the same signs, or of a single
+/// ray. For each, fills `packet`, in the index space with so many cells, and calls `visit(bricks)`, which returns
+/// some of the rays; the function returns all of these. `beam`: contains all of the rays; null, or not usable:
+/// `find(RayBeam)` returns the bricks for each packet.
 template <class Find, class Visit>
 RayMask FillPackets(RayPacket& packet, const IndexSpace& space, const glm::dmat4& indexToWorld,
   const bricks::Index3& cells, const PacketKernel& kernel, BeamBricks* beam, const Ray* rays,

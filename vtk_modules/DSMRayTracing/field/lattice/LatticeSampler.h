@@ -46,8 +46,8 @@ public:
     return wanted;
   }
 
-  /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in cells that
-  /// are there, whatever the values of these.
+  /// NaN where there are no data; infinite between infinite values of one sign. Returns the places that are in
+  /// cells that are there, whatever the values of these.
   RayMask FindValues(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     double* values) const;
 
@@ -59,7 +59,8 @@ public:
   void FindGradients(const bricks::VoxelField& field, const LatticePlace* places, RayMask wanted,
     glm::dvec3* gradients) const;
 
-  /// How fast values grow on each axis of the index (or grid) space at points in world space: CellNeighbourhood::GetGradient.
+  /// How fast values grow on each axis of the index (or grid) space at points in world space:
+  /// CellNeighbourhood::GetGradient.
   void FindSmoothGradients(const LatticeField& field, const std::vector<glm::dvec3>& points,
     std::vector<glm::dvec3>& gradients) const;
 
@@ -95,7 +96,8 @@ private:
     double* values, const Evaluate& evaluate) const;
 
   static void FindCell(const LatticeField& field, const glm::dvec3& point, Asked& asked);
-  /// Finds smooth gradients at positions in the same brick. Returns the positions whose samples are not all in the brick.
+  /// Finds smooth gradients at positions in the same brick. Returns the positions whose samples are not all in the
+  /// brick.
   template <class T, class Iterator>
   std::vector<const Asked*> FindGradientsWithin(const LatticeField& field, Iterator begin,
     Iterator end, std::vector<glm::dvec3>& gradients) const;

@@ -20,7 +20,7 @@
 namespace rt
 {
 
-/// Between infinite values there are no others, though their difference is no number.
+/// Equal infinite values have no others between them, though their difference is NaN.
 inline double EvaluateWithInfinite(const double corners[8], const Lanes& local)
 {
   const double value = EvaluateTrilinear(corners, local);
@@ -45,7 +45,8 @@ public:
   {
   }
 
-  /// Samples at the corners of such a cell that the point is in, and where in the cell it is; false where there is none.
+  /// Samples at the corners of such a cell that the point is in, and where in the cell it is; false where there is
+  /// none.
   bool FindCorners(
     const glm::dvec3& indexPoint, T corners[8], Lanes& local, Corners which = Corners::Finite)
   {

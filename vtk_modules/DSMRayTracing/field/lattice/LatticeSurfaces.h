@@ -47,8 +47,8 @@ public:
       { AddNeighbors(sets, id, neighbors); });
   }
 
-  /// Finds the first hits of those of the rays that are `wanted` in [ray.Min, ray.Max], returns which have one, and
-  /// calls `open(index, t)` for each of them, which says where the IsosurfaceHit is to be stored, or null: nowhere.
+  /// Finds the first hits of the `wanted` rays in [ray.Min, ray.Max], and returns the rays that have one. Calls
+  /// `open(index, t)` for each of these, which returns where the IsosurfaceHit is to be stored, or null: nowhere.
   /// `beam`: from FindBeam, with all of the rays within; null: rays go where they like.
   template <class Open>
   RayMask Intersect(

@@ -49,8 +49,7 @@ private:
     }
   }
 
-  /// Bits of the samples from `row` on that are inside: of RowSamples where that many are compared at
-  /// once, else of five.
+  /// Bits of the samples from `row` on that are inside: of RowSamples if a vector has room for these, else of five.
   static HWY_INLINE std::uint64_t CompareRow(const T* row, T first)
   {
     const hn::CappedTag<T, std::min<std::size_t>(Lanes, RowSamples)> tag;

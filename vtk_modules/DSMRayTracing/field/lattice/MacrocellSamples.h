@@ -19,9 +19,9 @@ struct MacrocellSamples
   int Counts[3]; ///< cells on each axis
   float Values[Edge][Edge][RowLength] = {};
 
-  /// Of a rectilinear grid, for each inner plane of the macrocell (from 0 on): what the differences behind and before it are
-  /// multiplied by, so that their difference is what the values' slope changes by, over the wider of the two cells; 1 where
-  /// widths are equal.
+  /// Factors for the differences of values behind and before each inner plane of the macrocell (from 0 on) of a
+  /// rectilinear grid. Their difference is then the change of the values' slope over the wider of the two cells.
+  /// The factors are 1 where widths are equal.
   bool IsStretched = false;
   float Behind[3][RowLength] = {};
   float Before[3][RowLength] = {};

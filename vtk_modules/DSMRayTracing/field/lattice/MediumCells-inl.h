@@ -120,10 +120,9 @@ private:
   hn::Vec<Tag> Part[Parts];
 };
 
-/// Visitor for BrickSearch, for rays through a medium. Within a cell, the value along a ray is a
-/// cubic. It is divided into enough pieces that it is nearly linear in each, as far as the transfer
-/// function makes a difference; each piece is integrated over its values. A macrocell in which
-/// values hardly bend is integrated as a whole.
+/// Visitor for BrickSearch, for rays through a medium. Within a cell, the value along a ray is a cubic. It is
+/// divided into enough pieces that it is nearly linear in each, as far as the transfer function makes a difference;
+/// each piece is integrated over its values. A macrocell in which values hardly bend is integrated in one step.
 template <class D>
 class MediumCells
 {

@@ -136,10 +136,10 @@ struct RayLines
   }
 };
 
-/// The nodes (NodeOrder) that rays, from `enter` to `leave`, cross of a box of 4 x 4 x 4; each ray may have a box of its
-/// own. `getPlane(axis, number)`: the planes of the boxes, from 0, through which rays come in, to 4. They are those that GridWalk steps
-/// through: where a ray meets several planes at once, it goes through all of them together. Nodes
-/// that a ray only touches may be added.
+/// The nodes (NodeOrder) that rays, from `enter` to `leave`, cross of a box of 4 x 4 x 4; each ray may have a box
+/// of its own. `getPlane(axis, number)`: the planes of the boxes, from 0, through which rays come in, to 4. They
+/// are those that GridWalk steps through: where a ray meets several planes at once, it goes through all of them
+/// together. Nodes that a ray only touches may be added.
 ///
 /// A ray is on all three axes between two planes at a time when it is so on each two of them: so every
 /// two planes tell, by which of them is met first, that some nodes are never come to.

@@ -16,7 +16,7 @@ namespace rt
 struct PacketPart
 {
   std::uint64_t Macrocells; ///< those that may hold the surface
-  std::uint64_t Known;      ///< those of which Cells tells something
+  std::uint64_t Known;      ///< those whose Cells are valid
   std::uint64_t Cells[64];  ///< for each macrocell: its cells that have corners on both sides
   ///@{
   /// For media: TransferFunction::Behavior in each macrocell.
@@ -24,7 +24,8 @@ struct PacketPart
   double Change[64];
   double Tinge[64];
   ///@}
-  /// Those of Known in which values bend so little that rays may go through them as a whole; see TransferTest.
+  /// The subset of Known in which values bend so little that rays may go through them in one step; see
+  /// TransferTest.
   std::uint64_t Smooth;
 };
 
@@ -58,7 +59,7 @@ public:
   };
   FloatSamples Floats;
 
-  /// Whether a cell has data. Its coordinates may lie outside of the brick.
+  /// Returns whether a cell has data. Its coordinates may lie outside of the brick.
   virtual bool HasCell(const int cell[3]) const = 0;
 
   /// For bricks of levels, next to cells of another size: values there agree but for the rounding of samples, so a ray
@@ -70,8 +71,8 @@ public:
     double Rounding = 0.0; ///< of a value of 1
     double Largest = 0.0;  ///< value of the brick
 
-    /// Returns whether that is where a ray leaves the cell, which has no crossing. `corners` and `end`: as in CrossedCells,
-    /// `value`: where the ray leaves; it is less than the rounding of Largest.
+    /// Returns whether that is where a ray leaves the cell, which has no crossing. `corners` and `end`: as in
+    /// CrossedCells, `value`: where the ray leaves; it is less than the rounding of Largest.
     bool MayHide(const PacketBrick& brick, const double corners[8], const int cell[3],
       const double end[3], const bool forward[3], double value) const;
   };

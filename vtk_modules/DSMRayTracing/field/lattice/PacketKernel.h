@@ -34,7 +34,7 @@ struct PacketKernel
   RayPacket::Mask (*SetRays)(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
     const IndexSpace& space, const bricks::Index3& cells);
 
-  /// Those of `rays` that cross a brick (planes in cells) within the volume, and where.
+  /// Returns the subset of `rays` that cross a brick (planes in cells) within the volume, and sets where.
   RayPacket::Mask (*MeetBrick)(
     RayPacket& packet, RayPacket::Mask rays, const double lower[3], const double upper[3]);
 
@@ -43,7 +43,7 @@ struct PacketKernel
   void (*SearchBrick)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], PacketHits& hits);
 
-  /// Those of `rays` for which SearchBrick finds a hit.
+  /// Returns the subset of `rays` for which SearchBrick finds a hit.
   RayPacket::Mask (*FindOccluded)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3]);
 

@@ -90,7 +90,7 @@ public:
     return true;
   }
 
-  /// Of two boxes, rays mostly enter the one first of which this is less.
+  /// Returns a number by which boxes can be sorted: rays mostly enter the box with the smaller one first.
   double GetEntry(const double lower[3], const double upper[3]) const
   {
     double entry = 0.0;
@@ -101,8 +101,8 @@ public:
     return entry;
   }
 
-  /// The part of a row of boxes, all of which are from `lower` to `upper` on y and z, that rays may meet: its ends on x.
-  /// Returns false when there is none. May keep too much, but only near the beam.
+  /// The part of a row of boxes, all of which are from `lower` to `upper` on y and z, that rays may meet: its ends
+  /// on x. Returns false when there is none. May keep too much, but only near the beam.
   bool FindRow(const double lower[2], const double upper[2], double& low, double& high) const
   {
     low = this->Lower[0];

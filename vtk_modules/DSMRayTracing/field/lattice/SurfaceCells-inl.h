@@ -74,8 +74,8 @@ struct CellCrossings
   HWY_ALIGN double Values[Numbers][RayPacket::Size];
 };
 
-/// Those of a vector's rays (bits), which do not cross the surface in their cells, that may do so where they leave these:
-/// see PacketBrick::LevelBorder.
+/// Returns which of a vector's `rays` (bits), none of which crosses the surface in its cell, may cross it where
+/// they leave their cells: see PacketBrick::LevelBorder.
 template <class D>
 HWY_INLINE std::uint32_t FindHidden(
   const CrossedCells<D>& cells, const PacketCrossing<D>& crossing, std::uint32_t rays)

@@ -28,8 +28,8 @@ template <class T>
 class TransferTest
 {
 public:
-  /// `axes`: from index or grid space to the world. `planes`: of a rectilinear grid, or null; `origin`: the brick's first
-  /// cell there.
+  /// `axes`: from index or grid space to the world. `planes`: of a rectilinear grid, or null; `origin`: the brick's
+  /// first cell there.
   TransferTest(const TransferFunction& function, const PacketKernel& kernel, const glm::dmat3& axes,
     const bricks::GridPlanes* planes, const double origin[3])
     : Function(function)
@@ -59,9 +59,9 @@ public:
     return GetNodeBox(counts);
   }
 
-  /// Tells what is known of a macrocell of the part: also, whether the value along any ray in it is as good as quadratic.
-  /// The trilinear values in between are away from that by what they are away from any smooth curve, which is an eighth of
-  /// how much they bend in a cell.
+  /// Describes a macrocell of the part, and finds out whether the value along any ray in it is nearly quadratic.
+  /// The trilinear values deviate from that by as much as from any smooth curve: by an eighth of how much they bend
+  /// in a cell.
   void Describe(const bricks::VoxelBrick<T>& brick, const int first[3], const int counts[3],
     int macrocell, PacketPart& part) const
   {
@@ -111,7 +111,7 @@ private:
     return longest;
   }
 
-  /// Tells a rectilinear macrocell's samples about its widths; returns the longest way through it.
+  /// Sets the widths of a rectilinear macrocell's samples; returns the longest way through it.
   double SetWidths(MacrocellSamples& samples, const int first[3], const int counts[3]) const
   {
     glm::dmat3 edges = this->Axes;

@@ -44,8 +44,8 @@ inline void DifferentiateTrilinear(const double corners[8], const Lanes& point, 
   }
 }
 
-/// The cubic that the trilinear function is at start + s direction. The constant term is EvaluateTrilinear(corners, start),
-/// bit for bit.
+/// The cubic that the trilinear function is at start + s direction. The constant term is EvaluateTrilinear(corners,
+/// start), bit for bit.
 inline Cubic GetCubic(const double corners[8], const Lanes& start, const Lanes& direction)
 {
   Cubic cubic;

@@ -10,8 +10,8 @@ namespace rt
 {
 
 ///@{
-/// Crossings of the trilinear function of the corners on the way from `start` to `end` (both in the cell, in [0, 1]^3): see
-/// Cubic.h.
+/// Crossings of the trilinear function of the corners on the way from `start` to `end` (both in the cell, in [0,
+/// 1]^3): see Cubic.h.
 inline bool FindFirstCrossing(
   const double corners[8], const Lanes& start, const Lanes& end, double& s)
 {

@@ -17,9 +17,10 @@
 namespace rt
 {
 
-/// Finds the bricks of levels whose values satisfy `mayHold` (IsovaluePredicate) and that rays of a beam, in the index space
-/// of level 0, may meet. The planes of a brick are in cells of its own level. Nearer ones come first, but bricks of different
-/// levels may overlap, so a ray that has found something has to look into all that begin before that.
+/// Finds the bricks of levels whose values satisfy `mayHold` (IsovaluePredicate) and that rays of a beam, in the
+/// index space of level 0, may meet. The planes of a brick are in cells of its own level. Nearer ones come first,
+/// but bricks of different levels may overlap, so a ray that has found something has to look into all that begin
+/// before that.
 template <class Predicate>
 BeamBricks FindLevelBricks(
   const bricks::LevelVoxels& field, const Predicate& mayHold, const RayBeam& beam)
@@ -85,7 +86,8 @@ BeamBricks FindLevelBricks(
   return found;
 }
 
-/// The same for the rays between those of `corners`, in order around them. Not usable where these go to different sides.
+/// The same for the rays between those of `corners`, in order around them. Not usable where these go to different
+/// sides.
 template <class Predicate>
 BeamBricks FindLevelBricks(const LevelField& field, const Predicate& mayHold, const Ray corners[4])
 {

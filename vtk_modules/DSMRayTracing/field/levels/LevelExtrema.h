@@ -18,7 +18,7 @@
 namespace rt
 {
 
-/// Finds the largest or smallest value of levels that each ray of a batch meets. What LatticeExtrema is for a lattice.
+/// Finds the largest or smallest value of levels that each ray of a batch meets. The counterpart of LatticeExtrema.
 template <class Store>
 class LevelExtrema
 {

@@ -23,8 +23,9 @@
 namespace rt
 {
 
-/// Takes batches of rays through a medium whose values are those of levels. What LatticeMedia is for a lattice. Bricks of
-/// different levels may lie around one another, so the pieces that a ray meets are put in order before they count.
+/// Takes batches of rays through a medium whose values are those of levels. The counterpart of LatticeMedia. Bricks
+/// of different levels may lie around one another, so the pieces that a ray meets are put in order before they
+/// count.
 template <class Store>
 class LevelMedia
 {

@@ -16,10 +16,11 @@
 namespace rt
 {
 
-/// Reads values of levels through a store, at a batch of places: those of `places` that are `wanted`, of as many as MaxRays.
-/// A place is in the index space of its brick's level. Pure. One for each worker: it holds at most one pin, and none while it
-/// acquires or when a call returns. May wait for bricks. All fields of a dataset whose arrays are in all of its blocks have
-/// the same bricks; where a field has none with that number and box, there are no values.
+/// Reads values of levels through a store, at a batch of places: those of `places` that are `wanted`, of as many as
+/// MaxRays. A place is in the index space of its brick's level. Pure. One for each worker: it holds at most one
+/// pin, and none while it acquires or when a call returns. May wait for bricks. All fields of a dataset whose
+/// arrays are in all of its blocks have the same bricks; where a field has none with that number and box, there are
+/// no values.
 template <class Store>
 class LevelSampler
 {
@@ -55,8 +56,8 @@ public:
   void FindGradients(const bricks::LevelVoxels& field, const LatticePlace* places, RayMask wanted,
     glm::dvec3* gradients) const;
 
-  /// The smooth gradient there, in the index space of level 0: trilinear between central differences at the corners of the
-  /// place's cell, one step of its level to each side; one-sided where there are no data.
+  /// The smooth gradient there, in the index space of level 0: trilinear between central differences at the corners
+  /// of the place's cell, one step of its level to each side; one-sided where there are no data.
   void FindSmoothGradient(
     const bricks::LevelVoxels& field, const LatticePlace& place, glm::dvec3& gradient) const;
 

@@ -35,7 +35,8 @@ public:
     return !brick.HasMask || this->Enter(id).IsCovered(at.x, at.y, at.z);
   }
 
-  /// The corners of a leaf of a brick; false where the cell is none, or has a corner that is not finite.
+  /// Finds the corners of a leaf of a brick; returns false if the cell is not a leaf, or has a corner that is not
+  /// finite.
   bool GetCorners(dsm::BlockId id, const bricks::Index3& cell, double corners[8])
   {
     const bricks::LevelBrick& brick = this->Field.Lattice.GetBrick(id);
@@ -57,8 +58,8 @@ public:
     return true;
   }
 
-  /// The value at a point of a level, which may be within a cell of a coarser one. The level's own leaves are asked first,
-  /// then those of coarser and of finer ones, nearer levels first. False where there are no data.
+  /// The value at a point of a level, which may be within a cell of a coarser one. The level's own leaves are asked
+  /// first, then those of coarser and of finer ones, nearer levels first. False where there are no data.
   bool FindPoint(int level, const bricks::Index3& point, double& value)
   {
     if (this->FindPointInBrick(level, point, value))

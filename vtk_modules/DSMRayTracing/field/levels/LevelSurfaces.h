@@ -18,8 +18,9 @@
 namespace rt
 {
 
-/// Finds the isosurfaces of levels for batches of rays, brick by brick with the kernels of lattices, in the index space of
-/// each brick's level. What LatticeSurfaces is for a lattice; a ray finds the same bits whatever packets and mates it has.
+/// Finds the isosurfaces of levels for batches of rays, brick by brick with the kernels of lattices, in the index
+/// space of each brick's level. The counterpart of LatticeSurfaces. A ray finds the same bits, whatever other rays
+/// its packet has.
 template <class Store>
 class LevelSurfaces
 {
@@ -56,8 +57,8 @@ public:
 private:
   struct Nearest;
 
-  /// Calls `search(packet, open, index, surface, origin)` for each brick and isovalue with the rays that meet the brick, of
-  /// those that `isOpen(packet)` returns.
+  /// Calls `search(packet, open, index, surface, origin)` for each brick and isovalue with the rays that meet the
+  /// brick, of those that `isOpen(packet)` returns.
   template <class T, class IsOpen, class Search>
   void SearchBricks(const Sets& sets, BeamBricks& bricks, class LevelPackets& packets,
     const IsOpen& isOpen, const Search& search) const;

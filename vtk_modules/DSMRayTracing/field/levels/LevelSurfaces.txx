@@ -29,7 +29,7 @@ struct LevelSurfaces<Store>::Nearest
   RayMask WithoutGradient = 0;
   glm::dvec3 Gradient[RayPacket::Size]; ///< in the index space of level 0
 
-  /// Returns whether a hit comes before the one so far. Of equally near ones, which of them counts must not depend on the
+  /// Returns whether a hit comes before the one so far. The choice among equally near hits does not depend on the
   /// order of bricks.
   bool IsNearer(int ray, double t, int isovalue, dsm::BlockId brick) const
   {

@@ -14,8 +14,8 @@
 namespace rt
 {
 
-/// Base of a field's Sampler, which brings FindValues and FindGradients (Field.h), and may replace the rest. All batches have
-/// as many as MaxRays.
+/// Base of a field's Sampler, which brings FindValues and FindGradients (Field.h), and may replace the rest. All
+/// batches have as many as MaxRays.
 template <class FieldType, class SamplerType>
 class PlainSampler
 {

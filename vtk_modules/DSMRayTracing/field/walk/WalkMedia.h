@@ -38,8 +38,8 @@ private:
   using typename WalkSearch<FieldType, Store>::Segment;
   static constexpr double MostPieces = 65536.0;
 
-  /// Cuts a segment into pieces in which values are nearly linear, as far as the function makes a difference, and integrates
-  /// each over its values. Returns whether the ray is dark then.
+  /// Cuts a segment into pieces in which values are nearly linear, as far as the function makes a difference, and
+  /// integrates each over its values. Returns whether the ray is dark then.
   static bool Pass(
     const Segment& segment, const TransferFunction& function, int ray, MediumLight& light)
   {

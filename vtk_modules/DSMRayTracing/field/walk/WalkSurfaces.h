@@ -116,7 +116,8 @@ private:
     return this->Way.Find(sets.Field, ray, IsovaluePredicate(sets.Isovalues), visit);
   }
 
-  /// Calls `visit(number, cubic, last)` for the isovalues that may be within a segment, with how far its values are above.
+  /// Calls `visit(number, cubic, last)` for the isovalues that may be within a segment, with how far its values are
+  /// above.
   template <class Visit>
   static void ForEachIsovalue(
     const std::vector<double>& isovalues, const Segment& segment, const Visit& visit)
