@@ -39,7 +39,7 @@ public:
   static bool Read(const PositionedFile& file, const HdfChunkLayout& layout,
     const std::vector<std::uint64_t>& most, const Visit& visit);
 
-  // Functions that readers of all kinds share: blocks of the file, entries for chunks, and the order of numbered chunks.
+  // Functions that readers of all kinds share: blocks of the file, entries for chunks, the order of numbered chunks.
   std::size_t GetAxes() const { return this->Most.size(); }
 
   /// As HdfBytes has them; nothing where more is read altogether than the file has.
