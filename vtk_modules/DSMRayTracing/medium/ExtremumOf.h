@@ -21,7 +21,7 @@ template <class FieldType, class Store>
 class FieldExtremumTracer;
 
 /// The largest value of a field that a ray meets, or the smallest one, shown as a sheet where the ray meets it first: a
-/// kind of medium for each kind of field that offers, besides what IsosurfaceOf needs, Extrema (LatticeExtrema says how).
+/// kind of medium for each kind of field (Field.h).
 template <class FieldType>
 struct ExtremumOf
 {
