@@ -3,6 +3,7 @@
 #include "tests/unit/raytracing/MemoryStore.h"
 #include "tests/unit/raytracing/PublishedLevels.h"
 
+#include "DSMRayTracing/field/levels/LevelSections.h"
 #include "DSMRayTracing/field/levels/LevelSurfaces.h"
 #include "DSMRayTracing/scene/SceneObject.h"
 
@@ -10,6 +11,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -327,4 +329,47 @@ TEST(LevelSurfaces, HitsAreWhereTheFunctionCrosses)
     }
   }
   EXPECT_GT(crossed, 500);
+}
+
+TEST(LevelSections, TheBricksThatRaysOfABeamMeetAreForeseen)
+{
+  int met = 0;
+  for (unsigned seed = 0; seed < 8; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const LevelModel model = CreateRandomLevels(seed, false);
+    const PublishedLevels published(model);
+    rt::LevelField field;
+    field.Voxels = published.Levels;
+    field.SetIndexToWorld(glm::dmat4(1.0));
+    const glm::dvec3 middle = 0.5 * glm::dvec3(model.Roots);
+    const std::vector<rt::SectionPlane> planes{ { { 1.0, 0.3, 0.2 }, middle },
+      { { 0.1, -0.4, 1.0 }, 0.8 * middle } };
+    const rt::LevelSections sections(field, planes);
+    const auto create = [&](double x, double y)
+    {
+      rt::Ray ray;
+      ray.Origin = { -9.0, -8.0, -7.0 };
+      ray.Direction = middle + glm::dvec3(x, -x, y) - ray.Origin;
+      ray.Max = 4.0;
+      return ray;
+    };
+    const rt::Ray corners[4] = { create(0.0, 0.0), create(0.6, 0.0), create(0.6, 0.6),
+      create(0.0, 0.6) };
+    const rt::SectionBeam beam = sections.FindBeam(corners);
+    EXPECT_LT(beam.Bricks.size(), field.Voxels->Lattice.GetBrickCount());
+    for (int number = 0; number < 100; ++number)
+    {
+      const rt::Ray ray = create(0.06 * (number % 10 + 0.5), 0.06 * (number / 10 + 0.5));
+      rt::LevelSections::Hit hit;
+      while (sections.FindNext(ray, {}, hit))
+      {
+        const auto brick = field.FindBrick(ray.Origin + hit.T * ray.Direction);
+        met += std::count(beam.Bricks.begin(), beam.Bricks.end(), brick.Id) == 1;
+        EXPECT_TRUE(
+          !brick.Segment || std::count(beam.Bricks.begin(), beam.Bricks.end(), brick.Id) == 1);
+      }
+    }
+  }
+  EXPECT_GT(met, 400);
 }

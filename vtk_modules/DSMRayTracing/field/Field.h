@@ -53,7 +53,7 @@ struct WalkedField
 {
   ///@{
   /// What finds isosurfaces, takes rays through media, finds extrema and planes: LatticeSurfaces, LatticeMedia,
-  /// LatticeExtrema and LatticeSections say what one that replaces it has to do.
+  /// VoxelExtrema and LatticeSections say what one that replaces it has to do.
   template <class Store>
   using Surfaces = WalkSurfaces<FieldType, Store>;
   template <class Store>

@@ -20,9 +20,8 @@ namespace rt
 template <class FieldType, class Store>
 class FieldExtremumTracer;
 
-/// The largest value of a field that a ray meets, or the smallest one, shown as a sheet where the ray meets it
-/// first: a kind of medium for each kind of field that offers, besides what IsosurfaceOf needs, Extrema
-/// (LatticeExtrema says how).
+/// The largest value of a field that a ray meets, or the smallest one, shown as a sheet where the ray meets it first: a
+/// kind of medium for each kind of field (Field.h).
 template <class FieldType>
 struct ExtremumOf
 {

@@ -24,8 +24,8 @@ namespace rt
 template <class FieldType, class Store>
 class FieldMediumTracer;
 
-/// A medium whose emission and extinction are a function of a field's values: a kind of medium for each kind of field,
-/// which offers, besides what IsosurfaceOf needs, Media: what takes rays through it (LatticeMedia says how).
+/// A medium whose emission and extinction are a function of a field's values: a kind of medium for each kind of field
+/// (Field.h).
 template <class FieldType>
 struct MediumOf
 {

@@ -17,9 +17,8 @@ namespace rt
 template <class FieldType, class Store>
 class SliceTracer;
 
-/// Planes through a field, which show its values or those of another array: a kind of object for each kind of
-/// field, which offers, besides what IsosurfaceOf needs, Sections: where rays meet the planes (LatticeSections says
-/// how). A plane is there where the field has cells.
+/// Planes through a field, which show its values or those of another array: a kind of object for each kind of field
+/// (Field.h). A plane is there where the field has cells.
 template <class FieldType>
 struct SliceOf
 {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -52,8 +53,12 @@ public:
     const auto prefetch = [&](const typename FieldType::Values& values)
     {
       const dsm::BlockSegment* const segment = FieldType::GetSegment(values);
-      return segment &&
-        this->Blocks.Prefetch(*segment, bricks.data(), std::min(count, bricks.size()), {});
+      std::vector<dsm::BlockId> there;
+      std::copy_if(bricks.begin(),
+        bricks.begin() + static_cast<std::ptrdiff_t>(std::min(count, bricks.size())),
+        std::back_inserter(there),
+        [&](dsm::BlockId id) { return segment && id < segment->GetDirectory().GetCount(); });
+      return !there.empty() && this->Blocks.Prefetch(*segment, there.data(), there.size(), {});
     };
     const auto& field = this->Object.Field.GetValues();
     const bool anyAbsent = this->ReadsField && prefetch(field);

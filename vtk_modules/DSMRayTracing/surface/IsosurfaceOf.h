@@ -21,11 +21,7 @@ namespace rt
 template <class FieldType, class Store>
 class IsosurfaceTracer;
 
-/// Isosurfaces of one field: a kind of object for each kind of field. LatticeField shows what a field offers:
-/// - Values, what is sampled, and Place, where;
-/// - Surfaces, which finds the isosurfaces, and Sampler, which reads values, both for a store (LatticeSurfaces and
-///   LatticeSampler say what for);
-/// - GetValues, GetNormal, GetBlockCell, GetFinestLength and AddTo; HasHoles and AddTo of values.
+/// Isosurfaces of one field: a kind of object for each kind of field (Field.h).
 template <class FieldType>
 struct IsosurfaceOf : LevelSets<FieldType>
 {

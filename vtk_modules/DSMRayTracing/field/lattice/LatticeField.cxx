@@ -3,10 +3,9 @@
 
 #include "DSMRayTracing/object/ObjectDigest.h"
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-
-#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace rt
 {
@@ -28,20 +27,6 @@ LatticePlace LatticeField::GetPlace(const glm::dvec3& point) const
   place.Cell = glm::ivec3(cell);
   place.Brick = lattice.GetId(cell / bricks::Index3(lattice.GetEdge()));
   return place;
-}
-
-double LatticeField::GetGrowth(const glm::dvec3& gradient) const
-{
-  const glm::dmat3 edges(this->IndexToWorld);
-  const glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
-  const double mean = (lengths.x + lengths.y + lengths.z) / 3.0;
-  return glm::length(gradient / lengths) * mean;
-}
-
-double LatticeField::GetFinestLength(const glm::dmat3& worldToSpace) const
-{
-  const glm::dmat3 edges = worldToSpace * glm::dmat3(this->IndexToWorld);
-  return std::min({ glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]) });
 }
 
 ObjectTracer::Brick LatticeField::FindBrick(const glm::dvec3& place) const

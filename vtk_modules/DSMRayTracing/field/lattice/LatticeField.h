@@ -4,22 +4,15 @@
 
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
-#include "DSMRayTracing/field/lattice/LatticePlace.h"
-#include "DSMRayTracing/object/ObjectTracer.h"
+#include "DSMRayTracing/field/lattice/IndexedField.h"
 
 #include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
-
-#include <memory>
 
 namespace rt
 {
 
 class ObjectDigest;
-template <class Store>
-class LatticeExtrema;
 template <class Store>
 class LatticeMedia;
 template <class Store>
@@ -27,13 +20,13 @@ class LatticeSampler;
 template <class Store>
 class LatticeSurfaces;
 class LatticeSections;
+template <class FieldType, class Store>
+class VoxelExtrema;
 
 /// Values at the points of a lattice, uniform or rectilinear, in bricks of voxels, and where they are in the world. A
 /// kind of field: see Field.h.
-struct LatticeField
+struct LatticeField : IndexedField<bricks::VoxelField>
 {
-  using Values = bricks::VoxelField;
-  using Place = LatticePlace;
   template <class Store>
   using Sampler = LatticeSampler<Store>;
   template <class Store>
@@ -42,20 +35,7 @@ struct LatticeField
   using Media = LatticeMedia<Store>;
   using Sections = LatticeSections;
   template <class Store>
-  using Extrema = LatticeExtrema<Store>;
-
-  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice) to world; affine, invertible. Where Voxels has
-  /// Planes, it is grid space instead of index space, here and in what is called so below.
-  glm::dmat4 IndexToWorld{ 1.0 };
-  /// Its inverse; SetIndexToWorld keeps the two together.
-  glm::dmat4 WorldToIndex{ 1.0 };
-  void SetIndexToWorld(const glm::dmat4& matrix)
-  {
-    this->IndexToWorld = matrix;
-    this->WorldToIndex = glm::inverse(matrix);
-  }
-  std::shared_ptr<const Values> Voxels;
-  const Values& GetValues() const { return *this->Voxels; }
+  using Extrema = VoxelExtrema<LatticeField, Store>;
 
   IndexSpace GetIndexSpace() const
   {
@@ -72,18 +52,19 @@ struct LatticeField
   /// The place of a point in world space; of the nearest cell, beyond the lattice.
   LatticePlace GetPlace(const glm::dvec3& point) const;
   /// How much values grow in a cell of mean size where they grow so fast on each axis of the index space.
-  double GetGrowth(const glm::dvec3& gradient) const;
-  static const dsm::BlockSegment* GetSegment(const Values& values) { return values.Segment.get(); }
-  /// The brick of a place.
-  ObjectTracer::Brick FindBrick(const LatticePlace& place) const
+  double GetGrowth(const glm::dvec3& gradient) const
   {
-    return { this->Voxels->Segment.get(), place.Brick };
+    return this->GetGrowthInCell(gradient, glm::dvec3(1.0));
   }
+  using IndexedField::FindBrick;
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a
-  /// cell of mean size, because hits in its large cells are no more exact.
-  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const;
+  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a cell of
+  /// mean size, because hits in its large cells are no more exact.
+  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const
+  {
+    return this->GetShortestEdge(worldToSpace, glm::dvec3(1.0));
+  }
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 

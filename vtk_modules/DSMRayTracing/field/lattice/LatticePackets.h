@@ -15,6 +15,9 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace rt
 {
@@ -95,20 +98,50 @@ RayMask FillPackets(RayPacket& packet, const IndexSpace& space, const glm::dmat4
   return found;
 }
 
-/// FillPackets for a lattice: calls `visit(bricks, packet)` with the bricks whose values satisfy `mayHold`.
+/// A packet in the index space of a lattice: what LevelPackets is for levels.
+class LatticePackets
+{
+public:
+  explicit LatticePackets(const LatticeField& field)
+    : Field(field)
+  {
+  }
+
+  RayPacket& GetCoarsest() { return this->Packet; }
+  RayPacket& Get(dsm::BlockId) { return this->Packet; }
+  glm::dvec3 GetScale(dsm::BlockId) const { return glm::dvec3(1.0); }
+  const bricks::ValueRange& GetRange(dsm::BlockId id) const
+  {
+    return this->Field.Voxels->Hierarchy.GetLevels()[0].Ranges[id];
+  }
+  /// From front to back.
+  std::vector<std::size_t> GetOrder(const BeamBricks& bricks) const
+  {
+    std::vector<std::size_t> order(bricks.Bricks.size());
+    std::iota(order.begin(), order.end(), std::size_t{ 0 });
+    return order;
+  }
+
+private:
+  const LatticeField& Field;
+  RayPacket Packet;
+};
+
+/// FillPackets for a lattice: calls `visit(bricks, packets)` with the bricks whose values satisfy `mayHold`.
 template <class Predicate, class Visit>
 RayMask ForEachPacket(const LatticeField& field, const Predicate& mayHold,
   const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
 {
-  RayPacket packet;
+  LatticePackets packets(field);
   const IndexSpace space = field.GetIndexSpace();
   return FillPackets(
-    packet, space, field.IndexToWorld, field.Voxels->Lattice.GetCells(), kernel, beam, rays, wanted,
+    packets.GetCoarsest(), space, field.IndexToWorld, field.Voxels->Lattice.GetCells(), kernel,
+    beam, rays, wanted,
     [&](const RayBeam& own) {
       return BeamDescent<Predicate>(field.Voxels->Hierarchy, mayHold, own, space.GetPlanes())
         .Find();
     },
-    [&](BeamBricks& bricks) { return visit(bricks, packet); });
+    [&](BeamBricks& bricks) { return visit(bricks, packets); });
 }
 
 } // namespace rt

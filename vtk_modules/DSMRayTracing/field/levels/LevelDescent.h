@@ -89,7 +89,7 @@ BeamBricks FindLevelBricks(
 /// The same for the rays between those of `corners`, in order around them. Not usable where these go to different
 /// sides.
 template <class Predicate>
-BeamBricks FindLevelBricks(const LevelField& field, const Predicate& mayHold, const Ray corners[4])
+BeamBricks FindBeamBricks(const LevelField& field, const Predicate& mayHold, const Ray corners[4])
 {
   RayBeam beam;
   return beam.Set(field.GetIndexSpace(), corners) ? FindLevelBricks(*field.Voxels, mayHold, beam)

@@ -3,23 +3,11 @@
 
 #include "DSMRayTracing/object/ObjectDigest.h"
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-
-#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace rt
 {
-
-double LevelField::GetGrowth(const glm::dvec3& gradient) const
-{
-  const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();
-  const glm::dvec3 finest(scales.Get(scales.GetCount() - 1));
-  const glm::dmat3 edges(this->IndexToWorld);
-  const glm::dvec3 lengths(glm::length(edges[0]), glm::length(edges[1]), glm::length(edges[2]));
-  const glm::dvec3 cell = lengths / finest;
-  return glm::length(gradient / lengths) * (cell.x + cell.y + cell.z) / 3.0;
-}
 
 bricks::Index3 LevelField::GetBlockCell(const LatticePlace& place) const
 {
@@ -51,15 +39,6 @@ ObjectTracer::Brick LevelField::FindBrick(const glm::dvec3& place) const
     }
   }
   return { nullptr, 0 };
-}
-
-double LevelField::GetFinestLength(const glm::dmat3& worldToSpace) const
-{
-  const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();
-  const glm::dvec3 finest(scales.Get(scales.GetCount() - 1));
-  const glm::dmat3 edges = worldToSpace * glm::dmat3(this->IndexToWorld);
-  return std::min({ glm::length(edges[0]) / finest.x, glm::length(edges[1]) / finest.y,
-    glm::length(edges[2]) / finest.z });
 }
 
 void LevelField::AddTo(ObjectDigest& digest) const

@@ -3,38 +3,31 @@
 #define rt_LevelField_h
 
 #include "DSMBricks/levels/LevelVoxels.h"
-#include "DSMRayTracing/field/Field.h"
 #include "DSMRayTracing/field/lattice/IndexSpace.h"
-#include "DSMRayTracing/field/lattice/LatticePlace.h"
-#include "DSMRayTracing/object/ObjectTracer.h"
+#include "DSMRayTracing/field/lattice/IndexedField.h"
 
 #include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
-
-#include <memory>
 
 namespace rt
 {
 
 class ObjectDigest;
 template <class Store>
-class LevelExtrema;
-template <class Store>
 class LevelMedia;
 template <class Store>
 class LevelSampler;
+class LevelSections;
 template <class Store>
 class LevelSurfaces;
+template <class FieldType, class Store>
+class VoxelExtrema;
 
 /// Values at the points of lattices of several levels, as of AMR and of hyper tree grids: one continuous function, see
 /// bricks::LevelNodes. A kind of field: see Field.h. A Place is in the index space of its brick's
 /// level, all else in that of level 0.
-struct LevelField : WalkedField<LevelField>
+struct LevelField : IndexedField<bricks::LevelVoxels>
 {
-  using Values = bricks::LevelVoxels;
-  using Place = LatticePlace;
   template <class Store>
   using Sampler = LevelSampler<Store>;
   template <class Store>
@@ -42,19 +35,8 @@ struct LevelField : WalkedField<LevelField>
   template <class Store>
   using Media = LevelMedia<Store>;
   template <class Store>
-  using Extrema = LevelExtrema<Store>;
-
-  /// Point index space of level 0 to world; affine, invertible.
-  glm::dmat4 IndexToWorld{ 1.0 };
-  /// Its inverse; SetIndexToWorld keeps the two together.
-  glm::dmat4 WorldToIndex{ 1.0 };
-  void SetIndexToWorld(const glm::dmat4& matrix)
-  {
-    this->IndexToWorld = matrix;
-    this->WorldToIndex = glm::inverse(matrix);
-  }
-  std::shared_ptr<const Values> Voxels;
-  const Values& GetValues() const { return *this->Voxels; }
+  using Extrema = VoxelExtrema<LevelField, Store>;
+  using Sections = LevelSections;
 
   IndexSpace GetIndexSpace() const { return IndexSpace(this->IndexToWorld, this->WorldToIndex); }
   /// The unit normal, in world space, of a surface where the values grow so fast on each axis of the index space.
@@ -69,28 +51,36 @@ struct LevelField : WalkedField<LevelField>
   {
     return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
   }
-  /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their
-  /// border is within. Its cell is not known yet.
+  /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their border is
+  /// within. Its cell is not known yet.
   bool FindPlace(const glm::dvec3& point, LatticePlace& place) const;
-  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the
-  /// index space.
-  double GetGrowth(const glm::dvec3& gradient) const;
-  static const dsm::BlockSegment* GetSegment(const Values& values) { return values.Segment.get(); }
-  /// The brick of a place.
-  ObjectTracer::Brick FindBrick(const LatticePlace& place) const
+  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the index space.
+  double GetGrowth(const glm::dvec3& gradient) const
   {
-    return { this->Voxels->Segment.get(), place.Brick };
+    return this->GetGrowthInCell(gradient, this->GetFinestScale());
   }
+  using IndexedField::FindBrick;
   /// A brick that has a place (world space) in its box, of the finest level of such; of no segment, where none is.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
   /// Length of the shortest edge of a cell of the finest level, in the space to which the matrix leads.
-  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const;
+  double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const
+  {
+    return this->GetShortestEdge(worldToSpace, this->GetFinestScale());
+  }
   /// All that a picture depends on.
   void AddTo(ObjectDigest& digest) const;
 
   /// Returns whether any positions within the field have no value.
   static bool HasHoles(const Values&) { return true; }
   static void AddTo(ObjectDigest& digest, const Values& values);
+
+private:
+  /// Cells of the finest level in one of level 0.
+  glm::dvec3 GetFinestScale() const
+  {
+    const bricks::LevelScales& scales = this->Voxels->Lattice.GetScales();
+    return glm::dvec3(scales.Get(scales.GetCount() - 1));
+  }
 };
 
 } // namespace rt

@@ -2,17 +2,9 @@
 #ifndef rt_LevelMedia_h
 #define rt_LevelMedia_h
 
-#include "DSMBricks/layout/VoxelBrick.h"
-#include "DSMRayTracing/field/lattice/PacketKernel.h"
-#include "DSMRayTracing/field/lattice/TransferTest.h"
-#include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
+#include "DSMRayTracing/field/lattice/VoxelMedia.h"
+#include "DSMRayTracing/field/levels/LevelField.h"
 #include "DSMRayTracing/field/levels/LevelPackets.h"
-#include "DSMRayTracing/look/TransferFunction.h"
-#include "DSMRayTracing/ray/MediumLight.h"
-#include "DSMRayTracing/ray/Ray.h"
-
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -23,33 +15,16 @@
 namespace rt
 {
 
-/// Takes batches of rays through a medium whose values are those of levels. The counterpart of LatticeMedia. Bricks
-/// of different levels may lie around one another, so the pieces that a ray meets are put in order before they
-/// count.
+/// Takes batches of rays through a medium whose values are those of levels. Bricks of different levels may lie around one
+/// another, so the pieces that a ray meets before the next brick are put in order.
 template <class Store>
-class LevelMedia
+class LevelMedia : public VoxelMedia<LevelField, Store>
 {
 public:
   LevelMedia(Store& store, typename Store::Worker& worker)
-    : Blocks(store)
-    , Self(worker)
-    , Kernel(PacketKernel::GetBest())
+    : VoxelMedia<LevelField, Store>(store, worker)
     , Unsorted(std::make_unique<MediumLight>())
   {
-  }
-
-  /// See BeamFinder.
-  std::unique_ptr<ObjectBeam> FindBeam(
-    const LevelField& field, const TransferFunction& function, const Ray corners[4]) const
-  {
-    return std::make_unique<BeamBricks>(
-      FindLevelBricks(field, TransferPredicate(function), corners));
-  }
-
-  /// See BeamFinder.
-  bool Prefetch(const LevelField& field, const ObjectBeam& beam, std::size_t count) const
-  {
-    return PrefetchFirst(this->Blocks, *field.Voxels->Segment, beam, count);
   }
 
   /// See MediumTracer.
@@ -64,76 +39,84 @@ public:
     // Pieces are joined when they are in order.
     ForEachRay(
       wanted, [&](int ray) { all.FirstPiece[ray] = std::numeric_limits<std::size_t>::max(); });
-    ForEachLevelPacket(field, TransferPredicate(function), this->Kernel,
+    return ForEachPacket(field, TransferPredicate(function), this->Kernel,
       static_cast<BeamBricks*>(beam), rays, wanted,
       [&](BeamBricks& bricks, LevelPackets& packets)
-      {
-        this->MarchPacket(field, function, bricks, packets, light.JoinedLength, all);
-        return RayMask{ 0 };
-      });
-    return FindRays(wanted,
-      [&](int ray)
-      {
-        std::vector<MediumPiece>& pieces = all.Pieces[ray];
-        std::sort(pieces.begin(), pieces.end(),
-          [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
-        for (const MediumPiece& piece : pieces)
-        {
-          if (light.IsDark(ray))
-          {
-            break;
-          }
-          light.Add(ray, piece);
-        }
-        return light.IsDark(ray);
-      });
+      { return this->MarchPacket(field, function, bricks, packets, light); });
   }
 
 private:
-  /// `finestPiece`: length of a piece of the finest level that is described as one; 0: pieces are
-  /// not described.
-  void MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
-    LevelPackets& packets, double finestPiece, MediumLight& light) const
+  /// The rays that meet a brick, and the T from which on each of them may meet those behind it.
+  struct Visit
   {
+    RayMask Meets;
+    double Next[RayPacket::Size];
+  };
+
+  /// Finds which rays meet the bricks, and in what order.
+  std::vector<Visit> FindVisits(const BeamBricks& bricks, LevelPackets& packets) const
+  {
+    std::vector<Visit> visits(bricks.Bricks.size());
+    double next[RayPacket::Size];
+    std::fill_n(next, RayPacket::Size, std::numeric_limits<double>::infinity());
+    for (std::size_t place = visits.size(); place-- > 0;)
+    {
+      const BeamBricks::Brick& brick = bricks.Bricks[place];
+      RayPacket& packet = packets.Get(brick.Id);
+      std::copy_n(next, RayPacket::Size, visits[place].Next);
+      visits[place].Meets = this->Kernel.MeetBrick(packet, packet.Rays, brick.Lower, brick.Upper);
+      ForEachRay(visits[place].Meets,
+        [&](int ray) { next[ray] = std::min(next[ray], packet.BrickEnter[ray]); });
+    }
+    return visits;
+  }
+
+  /// Returns the rays that are dark.
+  RayMask MarchPacket(const LevelField& field, const TransferFunction& function, BeamBricks& bricks,
+    LevelPackets& packets, MediumLight& light) const
+  {
+    MediumLight& all = *this->Unsorted;
     const bricks::LevelLattice& lattice = field.Voxels->Lattice;
     const bricks::LevelScales& scales = lattice.GetScales();
     const double finest = scales.GetSize(scales.GetCount() - 1);
-    bricks::DispatchSamples(lattice,
+    const std::vector<Visit> visits = this->FindVisits(bricks, packets);
+    RayMask open = packets.GetCoarsest().Rays;
+    this->Dispatch(field,
       [&](auto sample)
       {
-        using T = decltype(sample);
-        for (std::size_t place = 0; place < bricks.Bricks.size(); ++place)
+        for (std::size_t place = 0; place < visits.size() && open != 0; ++place)
         {
-          const BeamBricks::Brick& brick = bricks.Bricks[place];
-          const int level = lattice.GetBrick(brick.Id).Level;
-          RayPacket& packet = packets.Get(level);
-          const RayMask meets =
-            this->Kernel.MeetBrick(packet, packet.Rays, brick.Lower, brick.Upper);
-          if (meets == 0)
+          if ((visits[place].Meets & open) == 0)
           {
             continue;
           }
-          bricks.Reached = std::max(bricks.Reached, place + 1);
-          const typename Store::Pin pin =
-            this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
-          const bricks::VoxelBrick<T> voxels(pin.GetData());
-          const glm::dvec3 scale(scales.Get(level));
-          light.JoinedLength = finestPiece * scales.GetSize(level) / finest;
-          glm::dmat3 axes = light.WorldToSpace * glm::dmat3(field.IndexToWorld);
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            axes[axis] /= scale[axis];
-          }
-          const TransferTest<T> test(function, this->Kernel, axes, nullptr, brick.Lower);
-          const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
-          this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
+          const int level = lattice.GetBrick(bricks.Bricks[place].Id).Level;
+          all.JoinedLength = light.JoinedLength * scales.GetSize(level) / finest;
+          RayMask none;
+          const RayMask meets = this->template MarchBrick<decltype(sample)>(
+            field, function, bricks, place, packets, open, all, none);
+          open &= ~FindRays(meets,
+            [&](int ray)
+            { return TakePieces(all.Pieces[ray], visits[place].Next[ray], ray, light); });
         }
       });
+    return packets.GetCoarsest().Rays & ~open;
   }
 
-  Store& Blocks;
-  typename Store::Worker& Self;
-  const PacketKernel& Kernel;
+  /// Moves the pieces that begin before `end`, in order, to the light of a ray; returns whether it is dark then.
+  static bool TakePieces(std::vector<MediumPiece>& pieces, double end, int ray, MediumLight& light)
+  {
+    std::sort(pieces.begin(), pieces.end(),
+      [](const MediumPiece& one, const MediumPiece& other) { return one.Begin < other.Begin; });
+    auto piece = pieces.begin();
+    for (; piece != pieces.end() && piece->Begin < end && !light.IsDark(ray); ++piece)
+    {
+      light.Add(ray, *piece);
+    }
+    pieces.erase(pieces.begin(), piece);
+    return light.IsDark(ray);
+  }
+
   std::unique_ptr<MediumLight> Unsorted; ///< during March; kept for its memory
 };
 

@@ -15,7 +15,9 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 namespace rt
@@ -25,9 +27,9 @@ namespace rt
 class LevelPackets
 {
 public:
-  explicit LevelPackets(const bricks::LevelScales& scales)
-    : Scales(scales)
-    , Scaled(static_cast<std::size_t>(scales.GetCount()))
+  explicit LevelPackets(const LevelField& field)
+    : Voxels(*field.Voxels)
+    , Scaled(static_cast<std::size_t>(this->Voxels.Lattice.GetScales().GetCount()))
   {
   }
 
@@ -35,13 +37,15 @@ public:
   RayPacket& GetCoarsest() { return this->Coarsest; }
   void Begin() { this->Scaled = decltype(this->Scaled)(this->Scaled.size()); }
 
-  RayPacket& Get(int level)
+  /// In that of a brick.
+  RayPacket& Get(dsm::BlockId id)
   {
+    const int level = this->Voxels.Lattice.GetBrick(id).Level;
     std::unique_ptr<RayPacket>& packet = this->Scaled[static_cast<std::size_t>(level)];
     if (!packet)
     {
       packet = std::make_unique<RayPacket>(this->Coarsest);
-      const glm::dvec3 scale(this->Scales.Get(level));
+      const glm::dvec3 scale = this->GetScale(id);
       for (int axis = 0; axis < 3; ++axis)
       {
         for (int ray = 0; ray < RayPacket::Size; ++ray)
@@ -55,19 +59,40 @@ public:
     return *packet;
   }
 
+  /// Cells of a brick's level in one of level 0.
+  glm::dvec3 GetScale(dsm::BlockId id) const
+  {
+    const bricks::LevelLattice& lattice = this->Voxels.Lattice;
+    return glm::dvec3(lattice.GetScales().Get(lattice.GetBrick(id).Level));
+  }
+  const bricks::ValueRange& GetRange(dsm::BlockId id) const
+  {
+    return this->Voxels.Hierarchy.GetRange(id);
+  }
+  /// An order of the bricks that does not depend on the packet.
+  std::vector<std::size_t> GetOrder(const BeamBricks& bricks) const
+  {
+    std::vector<std::size_t> order(bricks.Bricks.size());
+    std::iota(order.begin(), order.end(), std::size_t{ 0 });
+    std::sort(order.begin(), order.end(),
+      [&](std::size_t one, std::size_t other)
+      { return bricks.Bricks[one].Id < bricks.Bricks[other].Id; });
+    return order;
+  }
+
 private:
-  const bricks::LevelScales& Scales;
+  const bricks::LevelVoxels& Voxels;
   RayPacket Coarsest;
   std::vector<std::unique_ptr<RayPacket>> Scaled;
 };
 
 /// FillPackets for levels: calls `visit(bricks, packets)` with the bricks whose values satisfy `mayHold`.
 template <class Predicate, class Visit>
-RayMask ForEachLevelPacket(const LevelField& field, const Predicate& mayHold,
-  const PacketKernel& kernel, BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
+RayMask ForEachPacket(const LevelField& field, const Predicate& mayHold, const PacketKernel& kernel,
+  BeamBricks* beam, const Ray* rays, RayMask wanted, const Visit& visit)
 {
   const bricks::LevelLattice& lattice = field.Voxels->Lattice;
-  LevelPackets packets(lattice.GetScales());
+  LevelPackets packets(field);
   const bricks::Index3 cells(glm::ceil(lattice.GetBounds()[1]));
   return FillPackets(
     packets.GetCoarsest(), field.GetIndexSpace(), field.IndexToWorld, cells, kernel, beam, rays,

@@ -3,11 +3,11 @@
 #define rt_LevelSearches_h
 
 // All that LevelField names.
-#include "DSMRayTracing/field/levels/LevelExtrema.h"
+#include "DSMRayTracing/field/lattice/VoxelExtrema.h"
 #include "DSMRayTracing/field/levels/LevelField.h"
 #include "DSMRayTracing/field/levels/LevelMedia.h"
 #include "DSMRayTracing/field/levels/LevelSampler.h"
+#include "DSMRayTracing/field/levels/LevelSections.h"
 #include "DSMRayTracing/field/levels/LevelSurfaces.h"
-#include "DSMRayTracing/field/walk/WalkSections.h"
 
 #endif

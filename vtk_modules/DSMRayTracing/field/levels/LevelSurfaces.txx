@@ -50,7 +50,7 @@ std::unique_ptr<ObjectBeam> LevelSurfaces<Store>::FindBeam(
   const Sets& sets, const Ray corners[4]) const
 {
   return std::make_unique<BeamBricks>(
-    FindLevelBricks(sets.Field, IsovaluePredicate(sets.Isovalues), corners));
+    FindBeamBricks(sets.Field, IsovaluePredicate(sets.Isovalues), corners));
 }
 
 template <class Store>
@@ -69,7 +69,7 @@ void LevelSurfaces<Store>::SearchBricks(const Sets& sets, BeamBricks& bricks, Le
   for (std::size_t place = 0; place < bricks.Bricks.size(); ++place)
   {
     const BeamBricks::Brick& brick = bricks.Bricks[place];
-    RayPacket& packet = packets.Get(field.Lattice.GetBrick(brick.Id).Level);
+    RayPacket& packet = packets.Get(brick.Id);
     RayMask open = this->Kernel.MeetBrick(packet, packet.Rays, brick.Lower, brick.Upper);
     open = open == 0 ? 0 : isOpen(packet, open);
     if (open == 0)
@@ -104,7 +104,7 @@ RayMask LevelSurfaces<Store>::Intersect(
 {
   const bricks::LevelVoxels& field = *sets.Field.Voxels;
   const IsovaluePredicate mayHold(sets.Isovalues);
-  return ForEachLevelPacket(sets.Field, mayHold, this->Kernel, static_cast<BeamBricks*>(beam), rays,
+  return ForEachPacket(sets.Field, mayHold, this->Kernel, static_cast<BeamBricks*>(beam), rays,
     wanted,
     [&](BeamBricks& bricks, LevelPackets& packets)
     {
@@ -185,7 +185,7 @@ template <class Store>
 RayMask LevelSurfaces<Store>::FindOccluded(const Sets& sets, const Ray* rays, RayMask wanted) const
 {
   const IsovaluePredicate mayHold(sets.Isovalues);
-  return ForEachLevelPacket(sets.Field, mayHold, this->Kernel, nullptr, rays, wanted,
+  return ForEachPacket(sets.Field, mayHold, this->Kernel, nullptr, rays, wanted,
     [&](BeamBricks& bricks, LevelPackets& packets)
     {
       RayMask found = 0;
@@ -207,7 +207,7 @@ RayMask LevelSurfaces<Store>::Attenuate(const Sets& sets, const std::vector<glm:
   const Ray* rays, RayMask wanted, glm::dvec3* transmittances) const
 {
   const IsovaluePredicate mayHold(sets.Isovalues);
-  return ForEachLevelPacket(sets.Field, mayHold, this->Kernel, nullptr, rays, wanted,
+  return ForEachPacket(sets.Field, mayHold, this->Kernel, nullptr, rays, wanted,
     [&](BeamBricks& bricks, LevelPackets& packets)
     {
       // Counted first: products depend on the order of their factors, and the bricks have none.

@@ -11,7 +11,7 @@
 namespace rt
 {
 
-/// Finds the largest or smallest value of a field that each ray meets by its Walk; see LatticeExtrema.
+/// Finds the largest or smallest value of a field that each ray meets by its Walk; see VoxelExtrema.
 template <class FieldType, class Store>
 class WalkExtrema : public WalkSearch<FieldType, Store>
 {

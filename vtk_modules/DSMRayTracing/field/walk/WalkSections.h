@@ -69,7 +69,7 @@ public:
     return beam;
   }
 
-private:
+protected:
   const FieldType& Field;
   const std::vector<SectionPlane>& Planes;
 };
