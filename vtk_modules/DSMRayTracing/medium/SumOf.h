@@ -25,8 +25,8 @@ namespace rt
 template <class FieldType, class Store>
 class FieldSumTracer;
 
-/// A function of a field's values, summed up along a ray, or its mean there, shown as an opaque gray where the ray first
-/// meets values that count: a kind of medium for each kind of field (Field.h).
+/// A function of a field's values, summed up along a ray, or its mean there, shown as an opaque gray where the ray
+/// first meets values that count: a kind of medium for each kind of field (Field.h).
 template <class FieldType>
 struct SumOf
 {

@@ -25,8 +25,8 @@ struct IndexedField
   using Values = ValuesType;
   using Place = LatticePlace;
 
-  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice, or of level 0) to world; affine, invertible. Where the
-  /// values have Planes, it is grid space instead of index space, here and in what is called so below.
+  /// Point index space (sample (i,j,k) at (i,j,k) of the lattice, or of level 0) to world; affine, invertible.
+  /// Where the values have Planes, it is grid space instead of index space, here and in what is called so below.
   glm::dmat4 IndexToWorld{ 1.0 };
   /// Its inverse; SetIndexToWorld keeps the two together.
   glm::dmat4 WorldToIndex{ 1.0 };
@@ -46,8 +46,8 @@ struct IndexedField
   }
 
 protected:
-  /// Length of the shortest edge of a cell, in the space to which the matrix leads. `cells`: on each axis of a unit of the
-  /// index space.
+  /// Length of the shortest edge of a cell, in the space to which the matrix leads. `cells`: on each axis of a unit
+  /// of the index space.
   double GetShortestEdge(const glm::dmat3& worldToSpace, const glm::dvec3& cells) const
   {
     const glm::dvec3 edges = GetLengths(worldToSpace * glm::dmat3(this->IndexToWorld)) / cells;

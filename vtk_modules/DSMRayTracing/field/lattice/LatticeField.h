@@ -59,8 +59,8 @@ struct LatticeField : IndexedField<bricks::VoxelField>
   using IndexedField::FindBrick;
   /// The brick that has a place's values (world space); of no segment, outside of the lattice.
   ObjectTracer::Brick FindBrick(const glm::dvec3& place) const;
-  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a cell of
-  /// mean size, because hits in its large cells are no more exact.
+  /// Length of a cell's shortest edge, in the space to which the matrix leads. A rectilinear grid gives that of a
+  /// cell of mean size, because hits in its large cells are no more exact.
   double GetFinestLength(const glm::dmat3& worldToSpace = glm::dmat3(1.0)) const
   {
     return this->GetShortestEdge(worldToSpace, glm::dvec3(1.0));

@@ -15,8 +15,8 @@
 namespace rt
 {
 
-/// Base of what searches a field's bricks of voxels, which are those of a lattice or of levels, for batches of rays. What a
-/// ray finds does not depend on its packet. Threads and pins as IsosurfaceSearch.
+/// Base of what searches a field's bricks of voxels, which are those of a lattice or of levels, for batches of
+/// rays. A ray's result does not depend on its packet. Threads and pins as IsosurfaceSearch.
 template <class FieldType, class Store>
 class VoxelSearch
 {

@@ -51,10 +51,11 @@ struct LevelField : IndexedField<bricks::LevelVoxels>
   {
     return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
   }
-  /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their border is
-  /// within. Its cell is not known yet.
+  /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their
+  /// border is within. Its cell is not known yet.
   bool FindPlace(const glm::dvec3& point, LatticePlace& place) const;
-  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the index space.
+  /// How much values grow in a cell of the finest level, of mean size, where they grow so fast on each axis of the
+  /// index space.
   double GetGrowth(const glm::dvec3& gradient) const
   {
     return this->GetGrowthInCell(gradient, this->GetFinestScale());

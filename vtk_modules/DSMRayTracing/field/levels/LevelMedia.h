@@ -15,8 +15,8 @@
 namespace rt
 {
 
-/// Takes batches of rays through a medium whose values are those of levels. Bricks of different levels may lie around one
-/// another, so the pieces that a ray meets before the next brick are put in order.
+/// Takes batches of rays through a medium whose values are those of levels. Bricks of different levels may lie
+/// around one another, so the pieces that a ray meets before the next brick are put in order.
 template <class Store>
 class LevelMedia : public VoxelMedia<LevelField, Store>
 {
