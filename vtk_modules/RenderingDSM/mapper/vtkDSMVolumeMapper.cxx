@@ -87,6 +87,10 @@ void AddBounds(vtkDataObject* data, vtkBoundingBox& box)
 } // namespace
 
 vtkStandardNewMacro(vtkDSMVolumeMapper);
+vtkCxxSetSmartPointerMacro(vtkDSMVolumeMapper, SlicePlanes, vtkPlaneCollection);
+vtkCxxSetSmartPointerMacro(vtkDSMVolumeMapper, SliceOpacity, vtkPiecewiseFunction);
+vtkCxxSetSmartPointerMacro(vtkDSMVolumeMapper, LookupTable, vtkScalarsToColors);
+vtkCxxSetSmartPointerMacro(vtkDSMVolumeMapper, BackfaceProperty, vtkProperty);
 
 vtkDSMVolumeMapper::vtkDSMVolumeMapper()
   : GlobalBounds(std::make_unique<vtkDSMKnownBounds>())
@@ -183,15 +187,6 @@ void vtkDSMVolumeMapper::RemoveAllSlices()
   }
 }
 
-void vtkDSMVolumeMapper::SetSlicePlanes(vtkPlaneCollection* planes)
-{
-  if (this->SlicePlanes != planes)
-  {
-    this->SlicePlanes = planes;
-    this->Modified();
-  }
-}
-
 vtkPlaneCollection* vtkDSMVolumeMapper::GetSlicePlanes() const
 {
   return this->SlicePlanes;
@@ -212,27 +207,9 @@ void vtkDSMVolumeMapper::RemoveAllSlicePlanes()
   this->SetSlicePlanes(nullptr);
 }
 
-void vtkDSMVolumeMapper::SetSliceOpacity(vtkPiecewiseFunction* function)
-{
-  if (this->SliceOpacity != function)
-  {
-    this->SliceOpacity = function;
-    this->Modified();
-  }
-}
-
 vtkPiecewiseFunction* vtkDSMVolumeMapper::GetSliceOpacity() const
 {
   return this->SliceOpacity;
-}
-
-void vtkDSMVolumeMapper::SetLookupTable(vtkScalarsToColors* table)
-{
-  if (this->LookupTable != table)
-  {
-    this->LookupTable = table;
-    this->Modified();
-  }
 }
 
 vtkScalarsToColors* vtkDSMVolumeMapper::GetLookupTable() const
@@ -286,15 +263,6 @@ void vtkDSMVolumeMapper::SetSurfaceProperty(vtkProperty* property)
 vtkProperty* vtkDSMVolumeMapper::GetSurfaceProperty() const
 {
   return this->SurfaceProperty;
-}
-
-void vtkDSMVolumeMapper::SetBackfaceProperty(vtkProperty* property)
-{
-  if (property != this->BackfaceProperty)
-  {
-    this->BackfaceProperty = property;
-    this->Modified();
-  }
 }
 
 vtkProperty* vtkDSMVolumeMapper::GetBackfaceProperty() const
