@@ -10,6 +10,7 @@
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkLight.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
@@ -63,6 +64,37 @@ vtkSmartPointer<vtkVolumeProperty> MakeBallProperty()
   property->SetScalarOpacity(opacity);
   property->SetScalarOpacityUnitDistance(4.0);
   return property;
+}
+
+/// The face of a cut hides what is behind it in any blend mode. Rounding leaves slivers of the medium in front of it, which
+/// must not show.
+TEST_F(VolumeMapper, FacesOfCutsHideProjections)
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(-0.3, -0.31, -0.9);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->AddClippingPlane(plane);
+  this->Mapper->CappingOn();
+  this->Mapper->CapOpacityOff();
+  this->Place();
+  this->Renderer->AddVolume(this->Volume);
+  this->Volume->SetProperty(MakeBallProperty());
+  const auto draw = [this](int mode)
+  {
+    this->Mapper->SetBlendMode(mode);
+    this->Window->Render();
+    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    const int middle = Size / 2;
+    this->Window->GetPixelData(middle - 12, middle - 12, middle + 12, middle + 12, 0, pixels);
+    return pixels;
+  };
+  const auto composite = draw(vtkVolumeMapper::COMPOSITE_BLEND);
+  EXPECT_GT(composite->GetValue(0), 20);
+  for (const int mode : { vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND,
+         vtkVolumeMapper::AVERAGE_INTENSITY_BLEND, vtkVolumeMapper::ADDITIVE_BLEND })
+  {
+    EXPECT_EQ(GetDifference(draw(mode), composite), 0.0) << "blend mode " << mode;
+  }
 }
 
 TEST_F(VolumeMapper, StandsInForTheRayCastMapper)

@@ -8,7 +8,7 @@
 #include "vtkPVDSMRefinement.h"
 #include "vtkPVDSMSharedOptions.h"
 
-#include "vtkAbstractMapper.h"
+#include "vtkAbstractMapper3D.h"
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
 #include "vtkColorTransferFunction.h"
@@ -36,7 +36,7 @@ vtkPVDSMTracedDisplay::vtkPVDSMTracedDisplay(vtkPVDataRepresentation* representa
 
 vtkPVDSMTracedDisplay::~vtkPVDSMTracedDisplay()
 {
-  this->Mapper->RemoveObserver(this->ProgressObserver);
+  this->Drop();
 }
 
 void vtkPVDSMTracedDisplay::Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
@@ -44,8 +44,17 @@ void vtkPVDSMTracedDisplay::Take(vtkProp3D* prop, vtkAbstractMapper* mapper, con
   this->Prop = prop;
   this->Mapper = mapper;
   this->Work = work;
+  this->DataBounds.Reset();
   this->ProgressObserver =
     mapper->AddObserver(vtkCommand::ProgressEvent, this, &vtkPVDSMTracedDisplay::ForwardProgress);
+  this->BoundsObserver =
+    mapper->AddObserver(vtkCommand::UpdateDataEvent, this, &vtkPVDSMTracedDisplay::TakeBounds);
+}
+
+void vtkPVDSMTracedDisplay::Drop()
+{
+  this->Mapper->RemoveObserver(this->ProgressObserver);
+  this->Mapper->RemoveObserver(this->BoundsObserver);
 }
 
 void vtkPVDSMTracedDisplay::Show(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work)
@@ -59,7 +68,7 @@ void vtkPVDSMTracedDisplay::Show(vtkProp3D* prop, vtkAbstractMapper* mapper, con
     this->BesideMapper = nullptr;
   }
   prop->SetPickable(this->Prop->GetPickable());
-  this->Mapper->RemoveObserver(this->ProgressObserver);
+  this->Drop();
   this->Take(prop, mapper, work);
   this->SetVisibility(this->Representation->GetVisibility());
 }
@@ -240,7 +249,10 @@ void vtkPVDSMTracedDisplay::KeepData(const double* bounds, bool isTranslucent, v
   vtkInformation* inInfo, vtkInformation* outInfo)
 {
   const double* known = bounds && vtkBoundingBox::IsValid(bounds) ? bounds : nullptr;
-  this->Bounds = known ? vtkBoundingBox(known) : vtkBoundingBox();
+  if (this->IsUpdated)
+  {
+    this->DataBounds.Reset(); // the scene tells those of the new data
+  }
   vtkPVDSMDelivery::KeepData(
     this->Representation, this->Placeholder, { known, isTranslucent, data }, inInfo, outInfo);
   // In world space: with a matrix, the view would transform two corners of the box only.
@@ -278,16 +290,42 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
 }
 
+void vtkPVDSMTracedDisplay::TakeBounds()
+{
+  this->DataBounds.Reset();
+  for (vtkAbstractMapper* const mapper : { this->Mapper.Get(), this->BesideMapper.Get() })
+  {
+    auto* const inSpace = vtkAbstractMapper3D::SafeDownCast(mapper);
+    if (const double* const bounds = inSpace ? inSpace->GetBounds() : nullptr)
+    {
+      this->DataBounds.AddBounds(bounds);
+    }
+  }
+  this->TellWhatHides();
+}
+
 void vtkPVDSMTracedDisplay::TellWhatHides()
 {
+  if (!this->DataBounds.IsValid())
+  {
+    return;
+  }
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Prop->GetMatrix(matrix);
+  vtkBoundingBox bounds;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    double point[4] = { 0.0, 0.0, 0.0, 1.0 };
+    this->DataBounds.GetCorner(corner, point);
+    bounds.AddPoint(matrix->MultiplyDoublePoint(point));
+  }
   auto* const ranks = vtkMultiProcessController::GetGlobalController();
   const char* const before = this->HiddenBy;
-  this->HiddenBy =
-    this->Bounds.IsValid() ? this->Clipping.FindWhatHides(this->Mapper, this->Bounds) : nullptr;
+  this->HiddenBy = this->Clipping.FindWhatHides(this->Mapper, bounds);
   if (this->HiddenBy && this->HiddenBy != before && (!ranks || ranks->GetLocalProcessId() == 0))
   {
     double place[6];
-    this->Bounds.GetBounds(place);
+    bounds.GetBounds(place);
     vtkWarningWithObjectMacro(this->Representation,
       << this->Representation->GetLogName() << ": the " << this->HiddenBy
       << " hides the whole dataset, which is at x " << place[0] << " to " << place[1] << ", y "

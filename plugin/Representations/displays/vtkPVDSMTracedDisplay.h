@@ -95,9 +95,14 @@ public:
 
 private:
   void Take(vtkProp3D* prop, vtkAbstractMapper* mapper, const char* work);
+  /// Stops to listen to the mapper.
+  void Drop();
+  /// Takes the bounds of all ranks' data, which a scene has told the mapper.
+  void TakeBounds();
   void Leave();
   void ShareOptions();
-  /// Warns, on the first rank, when a plane or box begins to hide the entire dataset.
+  /// Warns, on the first rank, when a plane or box begins to hide the entire dataset. Before all ranks' bounds are known,
+  /// it does nothing.
   void TellWhatHides();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();
@@ -111,10 +116,12 @@ private:
   vtkSmartPointer<vtkAbstractMapper> BesideMapper;
   const char* Work = nullptr;
   unsigned long ProgressObserver = 0;
+  unsigned long BoundsObserver = 0;
   bool IsUpdated = false;               ///< during the view's current request
   vtkWeakPointer<vtkPVRenderView> View; ///< from AddToView to RemoveFromView
   bool IsInView = false;
-  vtkBoundingBox Bounds;          ///< of all ranks, world
+  vtkBoundingBox
+    DataBounds; ///< of all ranks, without the prop's transform; not valid until the scene tells them
   const char* HiddenBy = nullptr; ///< what a warning was about
   vtkNew<vtkPartitionedDataSet> Placeholder;
   vtkNew<vtkPVDSMExportProp> ExportProp;            ///< for exporters

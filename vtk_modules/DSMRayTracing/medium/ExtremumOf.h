@@ -60,6 +60,7 @@ public:
     , Sign(medium.IsMinimum ? -1.0 : 1.0)
     , Limit(this->Sign * medium.Colors->FindUnseenEnd(medium.IsMinimum))
     , Goal(this->Sign * (medium.IsMinimum ? medium.Colors->First : medium.Colors->Last))
+    , Cell(medium.Field.GetFinestLength())
   {
   }
 
@@ -86,7 +87,10 @@ public:
     RayExtrema extrema(wanted, this->Medium.IsMinimum, this->Limit, this->Goal);
     this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
-      { return this->Extrema.Find(this->Medium.Field, this->Limit, beam, parts, some, extrema); });
+      {
+        const RayMask thick = FindThickParts(parts, some, this->Cell);
+        return this->Extrema.Find(this->Medium.Field, this->Limit, beam, parts, thick, extrema);
+      });
     ForEachRay(extrema.Found,
       [&](int ray)
       {
@@ -102,6 +106,7 @@ private:
   double Sign;
   double Limit;
   double Goal;
+  double Cell; ///< for FindThickParts
 };
 
 } // namespace rt

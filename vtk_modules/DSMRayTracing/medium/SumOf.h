@@ -88,6 +88,7 @@ public:
   FieldSumTracer(Store& store, typename Store::Worker& worker, const SumOf<FieldType>& medium)
     : Medium(medium)
     , Media(store, worker)
+    , Cell(medium.Field.GetFinestLength())
   {
   }
 
@@ -117,8 +118,8 @@ public:
     this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {
-        return this->Media.March(
-          this->Medium.Field, *this->Medium.Function, beam, parts, some, *sums);
+        return this->Media.March(this->Medium.Field, *this->Medium.Function, beam, parts,
+          FindThickParts(parts, some, this->Cell), *sums);
       });
     const RayMask found = FindRays(wanted, [&](int ray) { return !std::isinf(sums->First[ray]); });
     ForEachRay(found,
@@ -134,6 +135,7 @@ public:
 private:
   const SumOf<FieldType>& Medium;
   typename FieldType::template Media<Store> Media;
+  double Cell; ///< for FindThickParts
 };
 
 } // namespace rt

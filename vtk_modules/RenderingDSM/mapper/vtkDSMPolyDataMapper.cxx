@@ -8,6 +8,7 @@
 #include "vtkDSMScene.h"
 #include "vtkDSMSceneMesh.h"
 
+#include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkInformation.h"
@@ -103,6 +104,7 @@ double* vtkDSMPolyDataMapper::GetBounds()
 void vtkDSMPolyDataMapper::SetGlobalBounds(const double bounds[6])
 {
   this->GlobalBounds->Set(this, bounds);
+  this->InvokeEvent(vtkCommand::UpdateDataEvent);
 }
 
 void vtkDSMPolyDataMapper::UpdatePiece(int piece, int numberOfPieces)

@@ -59,13 +59,13 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
   this->Prop->ComputeMatrix();
   const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
   const std::size_t count = this->HasSeveralMedia() ? this->Arrays.size() : 1;
+  const std::size_t before = scene.Media.size();
   std::vector<int> groups(this->Data->GetParts().size());
   for (std::size_t number = 0; number < count; ++number)
   {
     this->AddMedium(look, number, dataToWorld, groups, scene);
   }
-  const bricks::ValueRange range = this->GetIso()->GetRange();
-  if (range.First <= range.Last)
+  if (scene.Media.size() > before) // else there is nothing that a plane could cut
   {
     this->AddCaps(look, dataToWorld, scene);
   }

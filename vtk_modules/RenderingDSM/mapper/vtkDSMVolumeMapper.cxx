@@ -9,6 +9,7 @@
 #include "vtkDSMSceneVolume.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCommand.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
@@ -316,6 +317,7 @@ double* vtkDSMVolumeMapper::GetBounds()
 void vtkDSMVolumeMapper::SetGlobalBounds(const double bounds[6])
 {
   this->GlobalBounds->Set(this, bounds);
+  this->InvokeEvent(vtkCommand::UpdateDataEvent);
 }
 
 void vtkDSMVolumeMapper::SetSuggestedIsoValue(double value)
