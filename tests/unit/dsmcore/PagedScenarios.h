@@ -5,7 +5,7 @@
 #include "DSMCore/paged/PageFaults.h"
 #include "DSMCore/paged/PagedStore.h"
 
-#include "tests/unit/dsmcore/StoreTestTools.h"
+#include "tests/unit/dsmcore/PairScenarios.h"
 
 #include <atomic>
 #include <cstdint>

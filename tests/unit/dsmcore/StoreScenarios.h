@@ -175,40 +175,6 @@ inline void CacheHoldsOneBrick(dsm::Messenger& messenger)
   EXPECT_EQ(counters.BytesReceived, (counters.Workers.Misses - counters.Workers.Joins) * bytes);
 }
 
-/// The same with pairs of blocks, and a cache of two; eight workers, of which one at a time waits for a pair.
-inline void CacheHoldsTwoBricks(dsm::Messenger& messenger)
-{
-  const std::uint32_t bytes = 512;
-  dsm::ObjectStore store(messenger, MakeSettings(2 * bytes, 8));
-  ReadRandomPairs(messenger, store, bytes);
-  EXPECT_LE(store.GetCounters().PeakCachedBytes, 2 * bytes);
-}
-
-/// With more room several of them wait at a time.
-inline void PairsShareACacheOfSixBricks(dsm::Messenger& messenger)
-{
-  const std::uint32_t bytes = 512;
-  dsm::ObjectStore store(messenger, MakeSettings(6 * bytes, 8));
-  ReadRandomPairs(messenger, store, bytes);
-}
-
-inline void BlocksThatAreNotPairedAreNoPair(dsm::Messenger& messenger)
-{
-  const auto directory =
-    MakeDirectory(messenger.GetSize(), 2 * static_cast<std::size_t>(messenger.GetSize()), 64);
-  dsm::ObjectStore store(messenger, MakeSettings(std::size_t(1) << 20));
-  const auto segment = PublishPattern(messenger, store, directory);
-  RunFrame(messenger, store,
-    [&](dsm::ObjectStore::Worker& worker, int)
-    {
-      const auto other = static_cast<dsm::BlockId>((messenger.GetRank() + 1) % messenger.GetSize());
-      if (directory.GetOwner(other) != messenger.GetRank())
-      {
-        EXPECT_THROW(store.AcquirePair(worker, *segment, 0, *segment, other), dsm::Error);
-      }
-    });
-}
-
 /// Workers that never pass a quiescent point of their own accord but by missing.
 inline void MissesAreQuiescentPoints(dsm::Messenger& messenger)
 {
@@ -399,16 +365,6 @@ inline void RanksThatDisagreeAboutTheBlocksAreTold(dsm::Messenger& messenger)
   PatternSink sink;
   const std::string text = GetErrorText([&] { store.Publish("Loading", directory, source, sink); });
   EXPECT_NE(text.find("disagree"), std::string::npos) << text;
-}
-
-inline void CacheSmallerThanTwoBricksIsRefusedToPairs(dsm::Messenger& messenger)
-{
-  const std::uint32_t bytes = 512;
-  const auto directory = MakePairedDirectory(
-    messenger.GetSize(), 2 * static_cast<std::size_t>(messenger.GetSize()), bytes);
-  dsm::ObjectStore store(messenger, MakeSettings(2 * bytes - 1));
-  const auto segment = PublishPattern(messenger, store, directory);
-  EXPECT_EQ(store.MayBeginFrame(), messenger.GetSize() == 1);
 }
 
 inline void CacheSmallerThanOneBrickIsRefused(dsm::Messenger& messenger)

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <random>
 #include <set>
 #include <string>
 #include <thread>
@@ -287,36 +286,6 @@ std::size_t Visit(
   const typename Store::Pin pin = store.Acquire(worker, segment, id);
   EXPECT_EQ(pin.GetBytes(), segment.GetDirectory().GetBytes(id));
   return CountWrongBytes(id, pin.GetData(), pin.GetBytes());
-}
-
-/// Every worker reads random pairs of blocks of two segments, and both are there as long as it holds them.
-template <class Store>
-void ReadRandomPairs(dsm::Messenger& messenger, Store& store, std::uint32_t bytes)
-{
-  constexpr int count = 60;
-  const auto directory = MakePairedDirectory(
-    messenger.GetSize(), 4 * static_cast<std::size_t>(messenger.GetSize()), bytes);
-  const auto topology = PublishPattern(messenger, store, directory);
-  const auto values = PublishPattern(messenger, store, directory);
-  RunFrame(messenger, store,
-    [&](typename Store::Worker& worker, int index)
-    {
-      std::minstd_rand random(static_cast<unsigned>(index + 10 * messenger.GetRank() + 1));
-      for (int number = 0; number < count; ++number)
-      {
-        const dsm::BlockId one = random() % directory.GetCount();
-        const dsm::BlockId other = random() % directory.GetCount();
-        const auto pair = store.AcquirePair(worker, *topology, one, *values, other);
-        EXPECT_EQ(CountWrongBytes(one, pair.first.GetData(), pair.first.GetBytes()), 0u);
-        EXPECT_EQ(CountWrongBytes(other, pair.second.GetData(), pair.second.GetBytes()), 0u);
-        EXPECT_EQ(CountWrongBytes(one, pair.first.GetData(), pair.first.GetBytes()), 0u);
-      }
-    });
-  const auto counters = store.GetCounters();
-  EXPECT_EQ(counters.Workers.Accesses,
-    2u * count * static_cast<std::uint64_t>(store.GetSettings().Workers));
-  store.Retire(topology);
-  store.Retire(values);
 }
 
 } // namespace dsm_test

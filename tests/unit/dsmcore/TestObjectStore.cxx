@@ -2,7 +2,7 @@
 #include "DSMCore/table/ObjectStore.h"
 
 #include "DSMCore/memory/HostMemory.h"
-#include "tests/unit/dsmcore/StoreScenarios.h"
+#include "tests/unit/dsmcore/PairScenarios.h"
 
 namespace
 {

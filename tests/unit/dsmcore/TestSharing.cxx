@@ -3,6 +3,7 @@
 #include "DSMCore/memory/HostSharedMemory.h"
 #include "DSMCore/publish/HostGroups.h"
 #include "DSMCore/table/BlockTable.h"
+#include "tests/unit/dsmcore/PairScenarios.h"
 #include "tests/unit/dsmcore/SharingScenarios.h"
 
 #include <fcntl.h>
