@@ -66,8 +66,8 @@ vtkSmartPointer<vtkVolumeProperty> MakeBallProperty()
   return property;
 }
 
-/// The face of a cut hides what is behind it in any blend mode. Rounding leaves slivers of the medium in front of it, which
-/// must not show.
+/// The face of a cut hides what is behind it in any blend mode. Rounding leaves slivers of the medium in front of it,
+/// which must not show.
 TEST_F(VolumeMapper, FacesOfCutsHideProjections)
 {
   vtkNew<vtkPlane> plane;

@@ -101,8 +101,8 @@ private:
   void TakeBounds();
   void Leave();
   void ShareOptions();
-  /// Warns, on the first rank, when a plane or box begins to hide the entire dataset. Before all ranks' bounds are known,
-  /// it does nothing.
+  /// Warns, on the first rank, when a plane or box begins to hide the entire dataset. Does nothing until all ranks'
+  /// bounds are known.
   void TellWhatHides();
   vtkSmartPointer<vtkActor> MakeExportActor(vtkPolyData* polygons) const;
   void ConnectFrameReport();

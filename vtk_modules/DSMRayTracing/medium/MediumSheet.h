@@ -28,9 +28,9 @@ inline void AddSheet(MediumLight& light, int ray, double t, const glm::dvec3& co
       Lanes(emission.x, emission.y, emission.z, depth) });
 }
 
-/// Returns those of the `wanted` parts of rays that a single value may stand for. Rounding leaves slivers of a medium in
-/// front of the face of a cut, which is a surface; a sheet there would hide the face. `cell`: length of a cell's shortest
-/// edge, in world space.
+/// Returns those of the `wanted` parts of rays that a single value may stand for. Rounding leaves slivers of a medium
+/// in front of the face of a cut, which is a surface. A sheet there would hide the face. `cell`: length of a cell's
+/// shortest edge, in world space.
 inline RayMask FindThickParts(const Ray* parts, RayMask wanted, double cell)
 {
   constexpr double least = 1e-4; // of a cell, as the clearance of a slice

@@ -113,7 +113,7 @@ public:
   ///@}
 
   /**
-   * For the scene, which knows all ranks' bounds. The mapper tells of them by vtkCommand::UpdateDataEvent.
+   * For the scene, which knows all ranks' bounds. Invokes vtkCommand::UpdateDataEvent.
    */
   void SetGlobalBounds(const double bounds[6]);
 
