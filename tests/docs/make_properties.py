@@ -29,8 +29,8 @@ FROM_DATA = {"mid": "center of the data", "data_bounds": "bounds of the data",
 
 def read_properties():
     properties = {}
-    for name in ("dsm_image_properties.xml.in", "dsm_representations.xml.in", "dsm_common_properties.xml.in",
-                 "dsm_geometry.xml.in"):
+    for name in ("dsm_image_properties.xml.in", "dsm_slice_properties.xml.in", "dsm_representations.xml.in",
+                 "dsm_common_properties.xml.in", "dsm_geometry.xml.in"):
         text = (PROJECT / "xml" / name).read_text(encoding="utf-8")
         text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
         for element in ElementTree.fromstring(f"<all>{text}</all>").iter():
