@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A drag of the camera over a volume in a file that nobody has read yet: frame times with and without coarser data
+"""A drag of the camera over a volume in a file that is not in memory yet: frame times with and without coarser data
 while moving. Called as
     pvbatch moving.py PLUGIN FILE ISOVALUE [MEMORY...]
 FILE has levels (dsm_convert --levels); MEMORY in MiB of each rank. The system's own copy of the file is dropped

@@ -22,9 +22,9 @@ void InstallCrashNotes(int codeForLibrary);
 /// nothing then, and goes on; with a sanitizer, the process ends with `codeForLibrary`.
 void LimitAllocations(std::size_t bytes);
 
-/// The process ends by SIGABRT when it has used the processor for so many seconds from now, so that a busy machine
-/// makes no difference, or when ten times as many have passed; 0: there is no limit. It ends with `codeForLibrary`
-/// where it is in a function of libhdf5 that is known not to end for some files.
+/// The process ends by SIGABRT when it has used so many seconds of processor time from now, or when ten times as many
+/// seconds have passed. Other work on the machine does not change the first limit. 0 sets no limit. The process ends
+/// with `codeForLibrary` if it is in a function of libhdf5 that is known not to end for some files.
 void LimitTime(unsigned seconds);
 
 } // namespace fuzz

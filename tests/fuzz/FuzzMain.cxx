@@ -8,7 +8,7 @@
 //   -artifact_prefix=PATH    what findings are named with  -ignore_crashes=1: go on after a finding
 // Folders have seeds. Files instead are inputs: each is run once. A process of its own runs the inputs. When it
 // ends in a crash, the input is kept, as PATHcrash-NUMBER; where the crash was in the HDF5 library (CrashNotes.h),
-// as PATHlibrary-NUMBER, and that is no finding.
+// as PATHlibrary-NUMBER, which does not count as a finding.
 #include "CrashNotes.h"
 #include "InputFolder.h"
 #include "Mutator.h"

@@ -3,7 +3,7 @@
 is the one that the data suggest, and so is what the reset button gives; while the panel's slider is dragged, which
 sets the unchecked value of the property only, the view shows it, and so it does with the index of a slice; an
 animation track can change the isovalue; another array has an isovalue of its own, also back and forth; where none is
-suggested, a number stands there that is nobody's choice, and is so again when a choice is undone; a list of several
+suggested, the panel shows a number that the user has not chosen, again also after a choice is undone; a list of several
 begins with the one that is there; and a display that was made before there were data has their array and their box
 once they are there."""
 

@@ -139,7 +139,7 @@ private:
   /// Exception of the listening thread; the communication thread fails the frame with it.
   std::exception_ptr ListenersFailure;
   std::atomic<bool> HasListenerFailed{ false };
-  std::condition_variable HasClosed; ///< or was cancelled: Phase is no longer Open
+  std::condition_variable HasClosed; ///< notified when Phase is no longer Open
   bool HasZeros = false;             ///< there are lines that are Zeroed
   /// A block stays at least this long, so that the threads that were woken for it get to read it.
   static constexpr std::chrono::microseconds ShortestHold{ 10 };

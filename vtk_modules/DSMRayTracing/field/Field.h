@@ -41,8 +41,8 @@ class WalkSurfaces;
 /// - `bool FindPlace(point, place) const`: the place of a point in world space as far as it is known without
 ///   bricks; false where the field surely is not. Sampler::FindPlaces finds the rest.
 /// - `void MovePlace(point, place) const`: moves a place to a point in world space that is in the same cell.
-/// - `glm::dvec3 GetNormal(gradient, rayDirection) const`: the unit normal in world space, in which the values
-///   fall; against the ray, where there is no gradient.
+/// - `glm::dvec3 GetNormal(gradient, rayDirection) const`: the unit normal in world space, towards lower values;
+///   opposite to the ray if the gradient is 0.
 /// - `double GetFinestLength(worldToSpace = 1) const`: the length of the smallest detail, such as the shortest edge
 ///   of a cell, in the space to which the matrix leads.
 /// - `double GetGrowth(gradient) const`: how much values grow in a cell of mean size.
