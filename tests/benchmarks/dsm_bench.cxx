@@ -4,7 +4,6 @@
 #include "BenchmarkCamera.h"
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
-#include "ConsolidationBenchmark.h"
 #include "DelayedTransport.h"
 #include "MeshBenchmark.h"
 
@@ -437,7 +436,6 @@ int main(int argc, char** argv)
   CLI::App app("Times the tracer and the memory below it, alone or under mpirun");
   app.require_subcommand(1);
   BenchmarkOptions isosurface;
-  ConsolidationBenchmark::Options consolidation;
   AccessBenchmark::Options access;
   MeshBenchmark::Options mesh;
   const auto add = [&](const char* name, auto& options, const char* text, auto run)
@@ -451,12 +449,6 @@ int main(int argc, char** argv)
     {
       network.SetLatency(1e-6 * options.Latency);
       RunIsosurface(options, messenger);
-    });
-  add("consolidation", consolidation, "the paper's Table 2",
-    [&](const ConsolidationBenchmark::Options& options)
-    {
-      network.SetLatency(1e-6 * options.Latency);
-      ConsolidationBenchmark::Run(options, messenger);
     });
   add("access", access, "the paper's Table 1",
     [&](const AccessBenchmark::Options& options) { AccessBenchmark::Run(options, messenger); });

@@ -17,3 +17,5 @@ RUN_SCENARIO(AveragesDoNotDependOnPieces)
 RUN_SCENARIO(CopiesStandInForMissingPieces)
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -56,3 +56,5 @@ TEST(MessengerOverMpi, AllRanksAreOnThisHost)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

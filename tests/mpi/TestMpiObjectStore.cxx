@@ -38,3 +38,5 @@ TEST(ObjectStoreOverMpi, TwoWorkersARankThroughACacheOfThreeBlocks)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -51,3 +51,5 @@ TEST_P(PagedStoreOverMpi, TwoWorkersARankThroughACacheOfThreeBlocks)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -23,3 +23,5 @@ RUN_SCENARIO(OrganizationsChangeUnderTheData)
 RUN_SCENARIO(TooLittleMemoryIsRefusedWithNumbers)
 
 } // namespace
+
+#undef RUN_SCENARIO

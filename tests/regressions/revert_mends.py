@@ -36,8 +36,8 @@ MENDS = (
     Mend("one member of a group held all blocks of an owner", "vtk_modules/DSMCore/publish/HostGroups.h",
          "id / this->GroupOf.size() % members", "id % members", ["unit_dsmcore"], "unit.dsmcore", "HostGroups*"),
     Mend("the end of a session waited for the other ranks", "vtk_modules/DSMCore/transport/MpiTransport.cxx",
-         "ended.emplace_back(new Transmission(std::move(*this)));", "this->Close();", ["mpi_TestMpiTransport"],
-         "mpi.TestMpiTransport.3"),
+         "ended.emplace_back(new Transmission(std::move(*this)));", "this->Close();", ["mpi_tests"],
+         "mpi.Ranks.3"),
     # DSMRayTracing
     Mend("a rank that was idle got no tiles of others", "vtk_modules/DSMRayTracing/schedule/WorkStealingScheduler.cxx",
          "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd(0)", ["unit_frame"],

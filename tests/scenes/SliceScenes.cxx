@@ -43,7 +43,7 @@ std::vector<rt::SectionPlane> CreateLayer(const rt::LatticeSlice& slice, int axi
   return { { gradient * glm::dmat3(slice.Field.WorldToIndex), glm::dvec3(toWorld * point) } };
 }
 
-void AddTypes(Scenes& scenes)
+void AddSliceTypes(Scenes& scenes)
 {
   for (const auto& [name, type] : Types)
   {
@@ -54,7 +54,7 @@ void AddTypes(Scenes& scenes)
   }
 }
 
-void AddShapes(Scenes& scenes)
+void AddSliceShapes(Scenes& scenes)
 {
   Recipe waves;
   Recipe holes = waves;
@@ -99,7 +99,7 @@ void AddShapes(Scenes& scenes)
   }
 }
 
-void AddLooks(Scenes& scenes)
+void AddSliceLooks(Scenes& scenes)
 {
   Recipe waves;
   Recipe ball;
@@ -170,7 +170,7 @@ void AddLooks(Scenes& scenes)
   }
 }
 
-void AddMixtures(Scenes& scenes)
+void AddSliceMixtures(Scenes& scenes)
 {
   Recipe waves;
   Recipe ball;
@@ -212,8 +212,8 @@ void AddMixtures(Scenes& scenes)
 
 void AddSliceScenes(std::vector<RecordedScene>& scenes)
 {
-  AddTypes(scenes);
-  AddShapes(scenes);
-  AddLooks(scenes);
-  AddMixtures(scenes);
+  AddSliceTypes(scenes);
+  AddSliceShapes(scenes);
+  AddSliceLooks(scenes);
+  AddSliceMixtures(scenes);
 }

@@ -6,7 +6,7 @@ using namespace SceneParts;
 namespace
 {
 
-void AddTypes(Scenes& scenes)
+void AddVolumeTypes(Scenes& scenes)
 {
   for (const auto& [name, type] : Types)
   {
@@ -35,7 +35,7 @@ void AddTypes(Scenes& scenes)
   }
 }
 
-void AddShapes(Scenes& scenes)
+void AddVolumeShapes(Scenes& scenes)
 {
   Recipe waves;
   Recipe ball;
@@ -194,8 +194,8 @@ void AddRectilinear(Scenes& scenes)
 
 void AddVolumeScenes(std::vector<RecordedScene>& scenes)
 {
-  AddTypes(scenes);
-  AddShapes(scenes);
+  AddVolumeTypes(scenes);
+  AddVolumeShapes(scenes);
   AddMissingData(scenes);
   AddBricks(scenes);
   AddFieldColors(scenes);

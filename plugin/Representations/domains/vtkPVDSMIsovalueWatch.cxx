@@ -30,12 +30,12 @@ namespace
 constexpr const char* Single = "DSMIsoValue";
 constexpr const char* List = "DSMIsoValues";
 
-constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
+constexpr const char* WatchedIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
 /// A property that no other way to show a dataset has.
 constexpr const char* OfSlices = "DSMSliceLighting";
 
 /// After what depends on a property, as ranges do, has heard of it.
-constexpr float Late = -1.0f;
+constexpr float AfterOthers = -1.0f;
 
 /// Properties that the range of that property depends on.
 constexpr const char* Choices[] = { "DSMIsoArray", "DSMIsoComponent" };
@@ -137,7 +137,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
   {
     if (property && !property->HasObserver(event, this->Observer))
     {
-      property->AddObserver(event, this->Observer, Late);
+      property->AddObserver(event, this->Observer, AfterOthers);
     }
   };
   for (const char* choice : Choices)
@@ -150,7 +150,7 @@ void vtkPVDSMIsovalueWatch::Watch(vtkSMProxy* representation, bool isInApplicati
     observe(single, vtkCommand::UncheckedPropertyModifiedEvent);
     observe(representation->GetProperty(List), vtkCommand::ModifiedEvent);
     observe(representation->GetProperty(List), vtkCommand::UncheckedPropertyModifiedEvent);
-    for (const char* index : SliceIndices)
+    for (const char* index : WatchedIndices)
     {
       observe(representation->GetProperty(index), vtkCommand::UncheckedPropertyModifiedEvent);
     }
@@ -172,7 +172,7 @@ void vtkPVDSMIsovalueWatch::OnEvent(vtkSMProperty* property, unsigned long event
   {
     this->OnList(property, event);
   }
-  else if (std::any_of(std::begin(SliceIndices), std::end(SliceIndices),
+  else if (std::any_of(std::begin(WatchedIndices), std::end(WatchedIndices),
              [&](const char* index) { return property == proxy->GetProperty(index); }))
   {
     this->OnSliceIndex(property);

@@ -14,14 +14,14 @@ namespace
 {
 
 /// Red, green, blue, opacity; less than 0 where the rest's counts.
-constexpr const char* Name = "DSMBlockLook";
+constexpr const char* LookArray = "DSMBlockLook";
 
 } // namespace
 
 vtkPVDSMExportLook vtkPVDSMExportLook::Get(vtkPolyData* polygons)
 {
   vtkPVDSMExportLook look;
-  if (vtkDataArray* numbers = polygons->GetFieldData()->GetArray(Name))
+  if (vtkDataArray* numbers = polygons->GetFieldData()->GetArray(LookArray))
   {
     const double* tuple = numbers->GetTuple(0);
     if (tuple[0] >= 0.0)
@@ -41,7 +41,7 @@ void vtkPVDSMExportLook::GiveTo(vtkPolyData* polygons) const
   const std::array<double, 3> color =
     this->Color.value_or(std::array<double, 3>{ -1.0, -1.0, -1.0 });
   vtkNew<vtkDoubleArray> numbers;
-  numbers->SetName(Name);
+  numbers->SetName(LookArray);
   numbers->SetNumberOfComponents(4);
   numbers->InsertNextTuple4(color[0], color[1], color[2], this->Opacity.value_or(-1.0));
   polygons->GetFieldData()->AddArray(numbers);

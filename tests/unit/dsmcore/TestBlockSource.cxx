@@ -136,7 +136,7 @@ private:
   std::thread Reader;
 };
 
-constexpr std::uint32_t Bytes = 1000;
+constexpr std::uint32_t SourceBytes = 1000;
 constexpr std::size_t Footprint = 1024;
 
 /// A rank's store of blocks that are in its file only.
@@ -149,7 +149,8 @@ public:
     , Store(messenger, dsm_test::MakeSettings(cachedBlocks * Footprint, workers))
     , File(std::make_shared<PatternFile>(messenger, delay))
     , Segment(this->Store.Publish("Opening the file",
-        dsm_test::MakeDirectory(messenger.GetSize(), BlocksOfRank * messenger.GetSize(), Bytes),
+        dsm_test::MakeDirectory(
+          messenger.GetSize(), BlocksOfRank * messenger.GetSize(), SourceBytes),
         this->File))
   {
   }

@@ -158,3 +158,5 @@ TEST(Messenger, WaitingRankLeavesTheProcessorToOthers)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -354,3 +354,5 @@ TEST(ObjectStore, MessagesOfAnOlderFrameAreIgnored)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -56,3 +56,5 @@ RUN_SCENARIO(CacheShrinksBetweenFrames)
 RUN_SCENARIO(CacheSmallerThanOneBrickIsRefused)
 
 } // namespace
+
+#undef RUN_SCENARIO

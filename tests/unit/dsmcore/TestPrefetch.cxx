@@ -62,3 +62,5 @@ TEST(PrefetchWhereAllIsHere, DoesNothing)
       EXPECT_FALSE(store.Prefetch(*segment, ids, 4));
     });
 }
+
+#undef RUN_SCENARIO

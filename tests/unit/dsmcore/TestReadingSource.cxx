@@ -21,11 +21,11 @@ namespace
 
 using dsm_test::DiskStore;
 using dsm_test::NoBlock;
-constexpr std::uint32_t Bytes = dsm_test::DiskBlockBytes;
+constexpr std::uint32_t DiskBytes = dsm_test::DiskBlockBytes;
 
-using Parameters = std::tuple<dsm::MemoryOrganization, int>;
+using DiskParameters = std::tuple<dsm::MemoryOrganization, int>;
 
-class BlocksOnDisk : public testing::TestWithParam<Parameters>
+class BlocksOnDisk : public testing::TestWithParam<DiskParameters>
 {
 protected:
   void Run(const std::function<void(dsm::Messenger&, dsm::MemoryOrganization)>& rank)
@@ -52,7 +52,7 @@ TEST_P(BlocksOnDisk, LeaveMemoryAndComeBack)
         disks.ReadAll();
         const auto counters = disks.Store.GetCounters();
         EXPECT_EQ(counters.ResidentBytes, 0u);
-        EXPECT_EQ(counters.CacheCapacity, 4 * Bytes);
+        EXPECT_EQ(counters.CacheCapacity, 4 * DiskBytes);
         EXPECT_LE(counters.PeakCachedBytes, counters.CacheCapacity);
         EXPECT_GT(counters.Evictions, 0u);
       }
@@ -174,7 +174,7 @@ TEST(BlocksOnDiskBesideOthers, OrganizationFollows)
     {
       DiskStore disks(messenger, dsm::MemoryOrganization::Automatic, 40);
       const auto stays =
-        dsm_test::PublishPattern(messenger, disks.Store, dsm_test::MakeDirectory(2, 8, Bytes));
+        dsm_test::PublishPattern(messenger, disks.Store, dsm_test::MakeDirectory(2, 8, DiskBytes));
       EXPECT_EQ(disks.Store.GetOrganization(), dsm::MemoryOrganization::ObjectBased);
       disks.ReadAll();
       EXPECT_GT(disks.Store.GetCounters().ResidentBytes, 0u);
@@ -393,7 +393,7 @@ TEST_P(BlocksOnDisk, GetOtherContents)
       const dsm::BlockId count = disks.Segment->GetDirectory().GetCount();
       const std::size_t wrong = disks.CountWrong();
       EXPECT_GT(wrong, 0u);
-      EXPECT_EQ(wrong % ((count + 2) / 3 * Bytes), 0u) << "the same to each worker";
+      EXPECT_EQ(wrong % ((count + 2) / 3 * DiskBytes), 0u) << "the same to each worker";
 
       EXPECT_TRUE(disks.Store.MayRefresh(disks.Segment));
       EXPECT_FALSE(disks.Store.MayUpdate(disks.Segment));

@@ -25,9 +25,9 @@ namespace
 {
 
 using Place = dsm::BlockStore::Place;
-using Parameters = std::tuple<dsm::MemoryOrganization, int>;
+using ScratchParameters = std::tuple<dsm::MemoryOrganization, int>;
 
-constexpr std::uint32_t Bytes = 4096; // a page
+constexpr std::uint32_t ScratchBytes = 4096; // a page
 constexpr std::size_t BlocksOfRank = 40;
 
 /// A directory that is empty at the end, whatever happened: the files in it have no names.
@@ -56,9 +56,9 @@ public:
       if (target.find(this->Path) == 0)
       {
         std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
-        file.seekp(5 * Bytes + 123);
+        file.seekp(5 * ScratchBytes + 123);
         const auto old = static_cast<char>(file.peek());
-        file.seekp(5 * Bytes + 123);
+        file.seekp(5 * ScratchBytes + 123);
         file.put(static_cast<char>(old + 1));
       }
     }
@@ -72,13 +72,13 @@ dsm::BlockStore::Settings MakeSettings(dsm::Messenger& messenger,
 {
   const int ranks = messenger.GetSize();
   auto directory =
-    dsm_test::MakeDirectory(ranks, BlocksOfRank * static_cast<std::size_t>(ranks), Bytes);
+    dsm_test::MakeDirectory(ranks, BlocksOfRank * static_cast<std::size_t>(ranks), ScratchBytes);
   // What is on its way from and to the disk.
-  directory.AddIndexBytes(
-    dsm::ReadingSource::MostReads * Bytes + dsm::ScratchBlocks::CountTableBytes(directory, ranks));
+  directory.AddIndexBytes(dsm::ReadingSource::MostReads * ScratchBytes +
+    dsm::ScratchBlocks::CountTableBytes(directory, ranks));
   dsm::BlockStore::Settings settings;
   settings.Organization = organization;
-  settings.MemoryBytes = (blocks + (ranks == 1 ? 0 : 2)) * Bytes +
+  settings.MemoryBytes = (blocks + (ranks == 1 ? 0 : 2)) * ScratchBytes +
     (organization == dsm::MemoryOrganization::PageBased
         ? dsm::PagedStore::Segment::CountTableBytes(directory)
         : dsm::BlockTable::CountTableBytes(directory));
@@ -93,7 +93,7 @@ std::shared_ptr<dsm::BlockSegment> Publish(
 {
   const int ranks = messenger.GetSize();
   const auto directory =
-    dsm_test::MakeDirectory(ranks, BlocksOfRank * static_cast<std::size_t>(ranks), Bytes);
+    dsm_test::MakeDirectory(ranks, BlocksOfRank * static_cast<std::size_t>(ranks), ScratchBytes);
   dsm_test::PatternSource source(
     directory, messenger.GetRank(), ranks, dsm_test::Spread::EveryRankASlice, 1000);
   dsm_test::PatternSink sink;
@@ -138,7 +138,7 @@ void ReadAll(dsm::Messenger& messenger, dsm::BlockStore& store, const dsm::Block
   EXPECT_EQ(wrong, 0u);
 }
 
-class Scratch : public testing::TestWithParam<Parameters>
+class Scratch : public testing::TestWithParam<ScratchParameters>
 {
 protected:
   void Run(const std::function<void(dsm::Messenger&, dsm::MemoryOrganization)>& rank)
@@ -207,7 +207,8 @@ TEST_P(Scratch, FaultsAreToldAndPass)
           EXPECT_NE(
             text.find("directory '" + scratch + "' (DSMScratchDirectory)"), std::string::npos)
             << text;
-          EXPECT_NE(text.find(std::to_string(BlocksOfRank * Bytes) + " bytes"), std::string::npos)
+          EXPECT_NE(
+            text.find(std::to_string(BlocksOfRank * ScratchBytes) + " bytes"), std::string::npos)
             << text;
           EXPECT_NE(text.find(said), std::string::npos) << text;
         }
@@ -225,7 +226,7 @@ TEST_P(Scratch, FaultsAreToldAndPass)
   rlimit limit{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
   rlimit low = limit;
-  low.rlim_cur = BlocksOfRank * Bytes - 1;
+  low.rlim_cur = BlocksOfRank * ScratchBytes - 1;
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
   expect(this->Disk.Path, "File too large. Free space on its disk");
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -258,17 +259,17 @@ TEST_P(Scratch, DamageIsSeenAndTheNextFrameWorks)
 TEST(ScratchBlocks, FragmentsComeInAnyOrder)
 {
   const Directory disk;
-  const auto directory = dsm_test::MakeDirectory(1, BlocksOfRank, Bytes);
+  const auto directory = dsm_test::MakeDirectory(1, BlocksOfRank, ScratchBytes);
   dsm::ScratchBlocks blocks(directory, 0, 1);
   dsm_test::PatternSink sink;
   blocks.Open(disk.Path);
-  for (std::uint64_t first = 0; first < Bytes; first += Bytes / 4)
+  for (std::uint64_t first = 0; first < ScratchBytes; first += ScratchBytes / 4)
   {
     for (dsm::BlockId id = 0; id < BlocksOfRank; ++id)
     {
-      std::vector<std::byte> fragment(sizeof(first) + Bytes / 4);
+      std::vector<std::byte> fragment(sizeof(first) + ScratchBytes / 4);
       std::memcpy(fragment.data(), &first, sizeof(first));
-      for (std::uint64_t place = 0; place < Bytes / 4; ++place)
+      for (std::uint64_t place = 0; place < ScratchBytes / 4; ++place)
       {
         fragment[sizeof(first) + place] = dsm_test::GetPattern(id, first + place);
       }
@@ -276,7 +277,7 @@ TEST(ScratchBlocks, FragmentsComeInAnyOrder)
     }
   }
   blocks.Finish(sink, {});
-  std::vector<std::byte> block(Bytes);
+  std::vector<std::byte> block(ScratchBytes);
   for (dsm::BlockId id = 0; id < BlocksOfRank; ++id)
   {
     blocks.Read(id, block.data(), block.size());

@@ -17,9 +17,9 @@
 namespace
 {
 
-using Parameters = std::tuple<dsm::MemoryOrganization, int>;
+using UpdateParameters = std::tuple<dsm::MemoryOrganization, int>;
 
-constexpr std::uint32_t Bytes = 4096; // a page
+constexpr std::uint32_t UpdateBytes = 4096; // a page
 constexpr dsm::BlockId Blocks = 60;
 
 /// Every byte of a block, by its contents' number.
@@ -56,8 +56,9 @@ public:
     {
       return false;
     }
-    const std::uint64_t first = Bytes * static_cast<std::uint64_t>(this->Rank) / this->Ranks;
-    const std::uint64_t last = Bytes * static_cast<std::uint64_t>(this->Rank + 1) / this->Ranks;
+    const std::uint64_t first = UpdateBytes * static_cast<std::uint64_t>(this->Rank) / this->Ranks;
+    const std::uint64_t last =
+      UpdateBytes * static_cast<std::uint64_t>(this->Rank + 1) / this->Ranks;
     fragment.Block = this->Id;
     fragment.Bytes.assign(
       sizeof(first) + last - first, GetValue(this->Id, this->Contents[this->Id]));
@@ -101,7 +102,7 @@ void Check(dsm::Messenger& messenger, dsm::BlockStore& store, const dsm::BlockSe
           for (dsm::BlockId id = 0; id < Blocks; ++id)
           {
             const typename Store::Pin pin = blocks.Acquire(worker, segment, id);
-            for (std::size_t place = 0; place < Bytes; place += 64)
+            for (std::size_t place = 0; place < UpdateBytes; place += 64)
             {
               wrong += pin.GetData()[place] != GetValue(id, contents[id]) ? 1 : 0;
             }
@@ -111,7 +112,7 @@ void Check(dsm::Messenger& messenger, dsm::BlockStore& store, const dsm::BlockSe
   EXPECT_EQ(wrong, 0u);
 }
 
-class SegmentUpdate : public testing::TestWithParam<Parameters>
+class SegmentUpdate : public testing::TestWithParam<UpdateParameters>
 {
 protected:
   void Run(bool sharing, const std::function<void(dsm::Messenger&, dsm::BlockStore&)>& rank)
@@ -130,8 +131,8 @@ protected:
     const std::vector<bool> all(Blocks, true);
     Source source(messenger, contents, all);
     dsm_test::PatternSink sink;
-    return store.Publish(
-      "Publishing", dsm_test::MakeDirectory(messenger.GetSize(), Blocks, Bytes), source, sink);
+    return store.Publish("Publishing",
+      dsm_test::MakeDirectory(messenger.GetSize(), Blocks, UpdateBytes), source, sink);
   }
 
   static void Update(dsm::Messenger& messenger, dsm::BlockStore& store,
@@ -178,9 +179,10 @@ TEST_P(SegmentUpdate, AllRanksReadWhatChanged)
           EXPECT_GT(segment->GetVersion(), version);
           const std::uint64_t moved = store.GetCounters().BytesPublished - before;
           const std::uint64_t heads = mine * static_cast<std::uint64_t>(messenger.GetSize()) * 8;
-          EXPECT_EQ(moved, mine * Bytes + heads);
+          EXPECT_EQ(moved, mine * UpdateBytes + heads);
           Check(messenger, store, *segment, contents);
-          EXPECT_LE(store.GetCounters().BytesReceived, (Blocks / 10 + 1) * 10 * (Bytes + 100));
+          EXPECT_LE(
+            store.GetCounters().BytesReceived, (Blocks / 10 + 1) * 10 * (UpdateBytes + 100));
         }
         store.Retire(segment);
       });
@@ -199,7 +201,7 @@ TEST_P(SegmentUpdate, WhatIsEqualIsNotFetchedAgain)
       contents[5] = 1;
       Update(messenger, store, segment, contents, std::vector<bool>(Blocks, true));
       Check(messenger, store, *segment, contents);
-      EXPECT_LE(store.GetCounters().BytesReceived, Bytes + 100) << "one block at most";
+      EXPECT_LE(store.GetCounters().BytesReceived, UpdateBytes + 100) << "one block at most";
     });
 }
 

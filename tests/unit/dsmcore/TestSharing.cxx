@@ -523,3 +523,5 @@ TEST(MemoryPlan, OwnBlocksMayExceedWhatIsThoughtFit)
 }
 
 } // namespace
+
+#undef RUN_SCENARIO

@@ -14,7 +14,7 @@ namespace
 {
 
 /// A camera at z = 5 that looks down the z axis, on a picture of 200 x 100 pixels.
-rt::FrameRequest CreateRequest(const glm::dmat4& projection)
+rt::FrameRequest CreateEdgeRequest(const glm::dmat4& projection)
 {
   rt::FrameRequest request;
   request.Width = 200;
@@ -27,7 +27,7 @@ rt::FrameRequest CreateRequest(const glm::dmat4& projection)
 /// A tenth of a world unit is a pixel.
 glm::dmat4x3 GetParallelView()
 {
-  return rt::PixelRays(CreateRequest(glm::ortho(-10.0, 10.0, -5.0, 5.0, 0.0, 20.0)))
+  return rt::PixelRays(CreateEdgeRequest(glm::ortho(-10.0, 10.0, -5.0, 5.0, 0.0, 20.0)))
     .GetView()
     .WorldToPixels;
 }
@@ -92,8 +92,9 @@ TEST(EdgeCover, AsManyPixelsNearAndFarAlsoFarFromTheWorldsOrigin)
 
 TEST(EdgeCover, CornersBehindTheCamera)
 {
-  const glm::dmat4x3 view =
-    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetView().WorldToPixels;
+  const glm::dmat4x3 view = rt::PixelRays(CreateEdgeRequest(glm::perspective(1.0, 2.0, 0.1, 100.0)))
+                              .GetView()
+                              .WorldToPixels;
   // The same line, by a far end before the camera or behind it; the other sides are out of view.
   const glm::dvec3 before[3] = { { 1.0, -1.0, -30.0 }, { 1.0, -1.0, 4.0 }, { -30.0, -1.0, -10.0 } };
   const glm::dvec3 behind[3] = { before[0], { 1.0, -1.0, 20.0 }, before[2] };
@@ -110,7 +111,7 @@ TEST(EdgeCover, CornersBehindTheCamera)
 TEST(EdgeCover, AMirrorShowsWhatIsBehindItsPlane)
 {
   const rt::PictureView view =
-    rt::PixelRays(CreateRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetView();
+    rt::PixelRays(CreateEdgeRequest(glm::perspective(1.0, 2.0, 0.1, 100.0))).GetView();
   const glm::dvec3 position(0.3, -0.2, -1.0);
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.2, 0.7, 0.5));
   const glm::dmat4x3 mirrored = view.GetMirrored(position, normal).WorldToPixels;

@@ -29,7 +29,7 @@ using FieldKinds::GetObject;
 /// A ball's surface is where this has such a value.
 const Quadratic Ball{ 0.0, { 0.1, 0.0, -0.1 }, { 1.0, 1.4, 0.9 } };
 constexpr double BallValue = 0.25;
-constexpr double FloorHeight = -0.8;
+constexpr double SliceHeight = -0.8;
 /// Lattices and levels hold exactly this.
 const Quadratic Slope{ 0.5, { 0.2, -0.15, 0.1 } };
 /// Largest within the box, and smallest at its sides.
@@ -161,7 +161,7 @@ protected:
   {
     rt::SliceOf<FieldType> slice;
     slice.Field = Create(values);
-    slice.Planes = { { { 0.0, 0.0, 1.0 }, { 0.0, 0.0, FloorHeight } } };
+    slice.Planes = { { { 0.0, 0.0, 1.0 }, { 0.0, 0.0, SliceHeight } } };
     return slice;
   }
   static rt::IsosurfaceOf<FieldType> CreateBall(const Values& values)
@@ -256,7 +256,7 @@ TYPED_TEST(FieldTest, SurfacesHaveColorsLightAndShadow)
     [](const rt::Ray& ray) -> Expected
     {
       const glm::dvec3 toLight = -GetLight().Direction;
-      const std::optional<double> floor = FindPlane(FloorHeight, ray);
+      const std::optional<double> floor = FindPlane(SliceHeight, ray);
       const std::vector<double> roots = FindRoots(Ball, BallValue, ray);
       if (!roots.empty() && !(floor && *floor < roots[0]))
       {
@@ -291,7 +291,7 @@ TYPED_TEST(FieldTest, TranslucentSurfacesDimLight)
       const glm::dvec3 passed = 0.5 * (1.0 + 0.5 * color);
       const glm::dvec3 toLight = -GetLight().Direction;
       const std::vector<double> roots = FindRoots(Ball, BallValue, ray);
-      const std::optional<double> floor = FindPlane(FloorHeight, ray);
+      const std::optional<double> floor = FindPlane(SliceHeight, ray);
       glm::dvec4 seen(0.0);
       if (floor)
       {

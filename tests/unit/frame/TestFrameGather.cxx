@@ -11,21 +11,21 @@
 namespace
 {
 
-constexpr int Edge = 8;
+constexpr int TileEdge = 8;
 
 /// A tile beside those of the other ranks: pixels that nothing covers, that are covered, and that are in part.
 rt::Frame CreateFrame(int rank, int ranks)
 {
   rt::Frame frame;
-  frame.Width = Edge * ranks;
-  frame.Height = frame.TileSize = Edge;
+  frame.Width = TileEdge * ranks;
+  frame.Height = frame.TileSize = TileEdge;
   frame.Channels.Value = rt::ChannelSet::All;
   rt::Tile& tile = frame.Tiles.emplace_back();
-  tile.Reset(frame.Channels, Edge * Edge);
-  tile.X = Edge * rank;
-  tile.Width = tile.Height = Edge;
+  tile.Reset(frame.Channels, TileEdge * TileEdge);
+  tile.X = TileEdge * rank;
+  tile.Width = tile.Height = TileEdge;
   std::mt19937 random(static_cast<unsigned>(rank));
-  for (int pixel = 0; pixel < Edge * Edge; ++pixel)
+  for (int pixel = 0; pixel < TileEdge * TileEdge; ++pixel)
   {
     const int kind = static_cast<int>(random() % 3);
     const auto alpha = static_cast<std::uint8_t>(kind == 2 ? 1 + random() % 254 : 255 * kind);
@@ -57,7 +57,7 @@ TEST(FrameGather, EdgesComeToAllRanks)
       for (std::size_t pixel = 0; pixel < whole.Depth.size(); ++pixel)
       {
         const std::uint8_t* const color = &whole.Color[4 * pixel];
-        const bool isMine = static_cast<int>(pixel) % frame.Width / Edge == messenger.GetRank();
+        const bool isMine = static_cast<int>(pixel) % frame.Width / TileEdge == messenger.GetRank();
         const bool isEdge = color[3] > 0 && color[3] < 255;
         edges += isEdge ? 1 : 0;
         rt::Channels::ForEach(
@@ -71,7 +71,7 @@ TEST(FrameGather, EdgesComeToAllRanks)
           },
           whole);
       }
-      EXPECT_GT(edges, Edge);
+      EXPECT_GT(edges, TileEdge);
     });
 }
 

@@ -21,7 +21,7 @@
 namespace
 {
 
-constexpr int Size = 96;
+constexpr int PictureSize = 96;
 /// The camera looks down the z axis, in parallel, at [-1, 1]^2.
 const glm::dmat4 Parallel = glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.0, 10.0) *
   glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
@@ -53,8 +53,8 @@ protected:
   {
     rt::FrameRequest request;
     request.Channels = channels;
-    request.Width = Size;
-    request.Height = Size;
+    request.Width = PictureSize;
+    request.Height = PictureSize;
     request.WorldToClip = Parallel;
     request.Samples = samples;
     request.IsPreview = isPreview;
@@ -64,12 +64,12 @@ protected:
 
   static glm::dvec2 GetPlace(int x, int y)
   {
-    return { (x + 0.5) * 2.0 / Size - 1.0, (y + 0.5) * 2.0 / Size - 1.0 };
+    return { (x + 0.5) * 2.0 / PictureSize - 1.0, (y + 0.5) * 2.0 / PictureSize - 1.0 };
   }
 
   static int GetRed(const rt::Picture& picture, int x, int y)
   {
-    return picture.Color[4 * (static_cast<std::size_t>(y) * Size + x)];
+    return picture.Color[4 * (static_cast<std::size_t>(y) * PictureSize + x)];
   }
 
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
@@ -93,7 +93,7 @@ TEST_F(LightTransportTest, WithoutShadowsTheFloorIsLitAllOver)
   const rt::Picture picture = this->Trace(scene);
   const int expected = static_cast<int>(std::lround(255.0 * -scene.Lights.front().Direction.z));
   EXPECT_NEAR(GetRed(picture, 5, 5), expected, 1);
-  EXPECT_NEAR(GetRed(picture, Size - 5, 40), expected, 1);
+  EXPECT_NEAR(GetRed(picture, PictureSize - 5, 40), expected, 1);
 }
 
 TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
@@ -108,9 +108,9 @@ TEST_F(LightTransportTest, SoftShadowHasAPenumbraAroundTheHardOne)
   // A light of tangent 0.3 and a ball 0.9 above the floor: half of the light at the hard rim, all
   // of it beyond the rim by 0.3 * 0.9.
   const double fullyLit = BallRadius + 0.3 * 0.9 * 1.2;
-  for (int x = 0; x < Size; ++x)
+  for (int x = 0; x < PictureSize; ++x)
   {
-    const int y = Size / 2;
+    const int y = PictureSize / 2;
     const double distance = glm::distance(GetPlace(x, y), glm::dvec2(BallCenter));
     if (distance > fullyLit)
     {
@@ -150,16 +150,16 @@ TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
     }
     return static_cast<double>(visible) / (Steps * Steps);
   };
-  for (const int x : { Size / 4 + 3, Size / 2, 3 * Size / 4, Size - 8 })
+  for (const int x : { PictureSize / 4 + 3, PictureSize / 2, 3 * PictureSize / 4, PictureSize - 8 })
   {
     double traced = 0.0;
     double expected = 0.0;
-    for (int y = 0; y < Size; ++y)
+    for (int y = 0; y < PictureSize; ++y)
     {
       traced += GetRed(picture, x, y) / 255.0;
       expected += getVisible(GetPlace(x, y));
     }
-    EXPECT_NEAR(traced / Size, expected / Size, 0.01) << x;
+    EXPECT_NEAR(traced / PictureSize, expected / PictureSize, 0.01) << x;
   }
 }
 
@@ -175,9 +175,9 @@ TEST_F(LightTransportTest, PreviewSharesOcclusionBetweenPixels)
   const auto getError = [&](const rt::Picture& picture)
   {
     double sum = 0.0;
-    for (int y = 0; y < Size; ++y)
+    for (int y = 0; y < PictureSize; ++y)
     {
-      for (int x = Size / 4 + 2; x < Size; ++x)
+      for (int x = PictureSize / 4 + 2; x < PictureSize; ++x)
       {
         sum += std::abs(GetRed(picture, x, y) - GetRed(expected, x, y));
       }
@@ -198,8 +198,8 @@ TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)
   scene.Transport.AmbientOcclusionSamples = 8;
   scene.Transport.AmbientOcclusionDistance = 0.2;
   const rt::Picture picture = this->Trace(scene, 8);
-  EXPECT_EQ(GetRed(picture, 3 * Size / 4, Size / 2), 255);
-  EXPECT_LT(GetRed(picture, Size / 4 + 2, Size / 2), 230);
+  EXPECT_EQ(GetRed(picture, 3 * PictureSize / 4, PictureSize / 2), 255);
+  EXPECT_LT(GetRed(picture, PictureSize / 4 + 2, PictureSize / 2), 230);
 }
 
 TEST_F(LightTransportTest, NestOfTranslucentSpheres)
@@ -214,8 +214,9 @@ TEST_F(LightTransportTest, NestOfTranslucentSpheres)
   const rt::Picture picture = this->Trace(scene);
   const auto getAlpha = [&](double radius)
   {
-    const int x = static_cast<int>((radius + 1.0) * Size / 2.0);
-    return picture.Color[4 * (static_cast<std::size_t>(Size / 2) * Size + x) + 3] / 255.0;
+    const int x = static_cast<int>((radius + 1.0) * PictureSize / 2.0);
+    return picture.Color[4 * (static_cast<std::size_t>(PictureSize / 2) * PictureSize + x) + 3] /
+      255.0;
   };
   EXPECT_NEAR(getAlpha(0.9), 0.0, 0.005);
   EXPECT_NEAR(getAlpha(0.65), 1.0 - 0.75 * 0.75, 0.005);
@@ -246,11 +247,11 @@ TEST_F(LightTransportTest, ChannelsOnRequestDescribeTheFirstSurface)
   EXPECT_EQ(averaged.Object, picture.Object);
   int objects[2] = {};
   int between = 0;
-  for (int y = 0; y < Size; ++y)
+  for (int y = 0; y < PictureSize; ++y)
   {
-    for (int x = 0; x < Size; ++x)
+    for (int x = 0; x < PictureSize; ++x)
     {
-      const std::size_t pixel = static_cast<std::size_t>(y) * Size + x;
+      const std::size_t pixel = static_cast<std::size_t>(y) * PictureSize + x;
       const glm::vec3 normal = glm::make_vec3(&picture.Normal[3 * pixel]);
       const std::int32_t object = picture.Object[pixel];
       EXPECT_EQ(object < 0, picture.Depth[pixel] == 1.0f);
@@ -284,9 +285,9 @@ TEST_F(LightTransportTest, ChannelsOnRequestDescribeTheFirstSurface)
       }
     }
   }
-  EXPECT_GT(objects[0], Size * Size / 2);
-  EXPECT_GT(objects[1], Size * Size / 30);
-  EXPECT_GT(between, Size / 2);
+  EXPECT_GT(objects[0], PictureSize * PictureSize / 2);
+  EXPECT_GT(objects[1], PictureSize * PictureSize / 30);
+  EXPECT_GT(between, PictureSize / 2);
 }
 
 TEST_F(LightTransportTest, MirrorShowsTheBackground)

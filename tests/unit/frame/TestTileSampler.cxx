@@ -23,7 +23,7 @@ double GetWaves(const glm::dvec3& p)
   return std::sin(7.0 * p.x) + std::sin(6.0 * p.y + p.x) + std::sin(8.0 * p.z) - 0.4;
 }
 
-struct Difference
+struct PixelDifference
 {
   int Covered = 0;
   int Pixels = 0; ///< that differ
@@ -32,7 +32,7 @@ struct Difference
 class TestTileSampler : public testing::Test
 {
 protected:
-  Difference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize,
+  PixelDifference Compare(const glm::dmat4& worldToClip, int width, int height, int tileSize,
     const rt::ClipRegion& clipping = rt::ClipRegion())
   {
     rt::Scene scene;
@@ -45,7 +45,7 @@ protected:
     return this->Compare(scene, worldToClip, width, height, tileSize);
   }
 
-  Difference Compare(
+  PixelDifference Compare(
     rt::Scene scene, const glm::dmat4& worldToClip, int width, int height, int tileSize)
   {
     scene.Lights.emplace_back();
@@ -81,7 +81,7 @@ private:
   }
 
   template <class Store>
-  static Difference CompareTiles(
+  static PixelDifference CompareTiles(
     Store& store, const rt::Scene& scene, const rt::FrameRequest& request)
   {
     auto& worker = store.GetWorker(0);
@@ -90,7 +90,7 @@ private:
     const rt::TileSampler together(tracers, scene, rays, request);
     const rt::PixelSampler alone(tracers, scene, rays, false, request.Channels);
     const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
-    Difference difference;
+    PixelDifference difference;
     store.BeginFrame();
     store.Enter(worker);
     for (int number = 0; number < grid.GetCount(); ++number)
@@ -127,7 +127,7 @@ glm::dmat4 LookAt(const glm::dvec3& eye)
 
 TEST_F(TestTileSampler, SlantedViewEqualsSinglePixels)
 {
-  const Difference difference = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
+  const PixelDifference difference = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
   EXPECT_GT(difference.Covered, 1000);
   EXPECT_EQ(difference.Pixels, 0);
 }
@@ -135,14 +135,14 @@ TEST_F(TestTileSampler, SlantedViewEqualsSinglePixels)
 /// Rays to both sides of two axes; tiles that are no multiple of a packet.
 TEST_F(TestTileSampler, ViewAlongAnAxisEqualsSinglePixels)
 {
-  const Difference difference = this->Compare(LookAt({ 0.01, 0.02, 3.6 }), 61, 47, 19);
+  const PixelDifference difference = this->Compare(LookAt({ 0.01, 0.02, 3.6 }), 61, 47, 19);
   EXPECT_GT(difference.Covered, 500);
   EXPECT_EQ(difference.Pixels, 0);
 }
 
 TEST_F(TestTileSampler, ViewFromInsideEqualsSinglePixels)
 {
-  const Difference difference = this->Compare(LookAt({ 0.11, 0.2, 0.31 }), 33, 35, 16);
+  const PixelDifference difference = this->Compare(LookAt({ 0.11, 0.2, 0.31 }), 33, 35, 16);
   EXPECT_GT(difference.Covered, 300);
   EXPECT_EQ(difference.Pixels, 0);
 }
@@ -152,7 +152,7 @@ TEST_F(TestTileSampler, ParallelViewAlongAnAxisEqualsSinglePixels)
 {
   const glm::dmat4 parallel = glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.0, 10.0) *
     glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
-  const Difference difference = this->Compare(parallel, 40, 40, 16);
+  const PixelDifference difference = this->Compare(parallel, 40, 40, 16);
   EXPECT_GT(difference.Covered, 500);
   EXPECT_EQ(difference.Pixels, 0);
 }
@@ -178,7 +178,7 @@ TEST_F(TestTileSampler, MeshesEqualSinglePixels)
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }),
            LookAt({ 0.11, 0.2, 0.31 }), parallel })
     {
-      const Difference difference = this->Compare(scene, view, 61, 47, 19);
+      const PixelDifference difference = this->Compare(scene, view, 61, 47, 19);
       EXPECT_GT(difference.Covered, 1000);
       EXPECT_EQ(difference.Pixels, 0);
     }
@@ -217,7 +217,7 @@ TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
     }
     for (const glm::dmat4& view : { LookAt({ 2.5, 1.8, 2.1 }), LookAt({ 0.01, 0.02, 3.6 }) })
     {
-      const Difference difference = this->Compare(scene, view, 45, 39, 16);
+      const PixelDifference difference = this->Compare(scene, view, 45, 39, 16);
       EXPECT_GT(difference.Covered, 500);
       EXPECT_EQ(difference.Pixels, 0);
     }
@@ -227,11 +227,11 @@ TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
 /// Cut by planes, and by boxes of which rays meet several: each part of a ray is searched.
 TEST_F(TestTileSampler, ClippedViewEqualsSinglePixels)
 {
-  const Difference whole = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
+  const PixelDifference whole = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16);
   rt::ClipRegion clipping;
   clipping.HalfSpaces = { { { 0.3, -1.0, 0.2 }, { 0.0, 0.4, 0.0 } },
     { { 0.0, 0.0, -2.0 }, { 0.0, 0.0, 0.7 } } };
-  const Difference cut = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
+  const PixelDifference cut = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
   EXPECT_GT(cut.Covered, 1000);
   EXPECT_NE(cut.Covered, whole.Covered);
   EXPECT_EQ(cut.Pixels, 0);
@@ -240,7 +240,7 @@ TEST_F(TestTileSampler, ClippedViewEqualsSinglePixels)
   boxes.Upper = { 0.4, 0.35, 0.1 };
   boxes.Kept = 0x5aa555a; // every other box
   clipping.Boxes = boxes;
-  const Difference parts = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
+  const PixelDifference parts = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
   EXPECT_GT(parts.Covered, 1000);
   EXPECT_EQ(parts.Pixels, 0);
 }

@@ -37,7 +37,7 @@ bool IsKept(const rt::ClipRegion& region, const glm::dvec3& p)
   return (region.Boxes->Kept >> box & 1u) != 0;
 }
 
-rt::Ray CreateRay(const glm::dvec3& origin, const glm::dvec3& direction, double last)
+rt::Ray CreateBoundedRay(const glm::dvec3& origin, const glm::dvec3& direction, double last)
 {
   rt::Ray ray;
   ray.Origin = origin;
@@ -72,7 +72,7 @@ TEST(ClipRegion, PartsAreWhereThePointsAreKept)
       boxes.Kept = random() & 0x7ffffffu;
       region.Boxes = boxes;
     }
-    const rt::Ray ray = CreateRay(2.0 * point(), 2.0 * point(), 2.0);
+    const rt::Ray ray = CreateBoundedRay(2.0 * point(), 2.0 * point(), 2.0);
     rt::ClipRegion::Interval parts[rt::ClipRegion::MaxParts];
     const int count = region.FindParts(ray, parts);
     largest = std::max(largest, count);
@@ -99,10 +99,10 @@ TEST(ClipRegion, ARayAlongTheBorderIsKept)
   rt::ClipRegion region;
   region.HalfSpaces = { { { 0.0, 2.0, 0.0 }, { 5.0, 1.0, 7.0 } } };
   rt::ClipRegion::Interval parts[rt::ClipRegion::MaxParts];
-  EXPECT_EQ(region.FindParts(CreateRay({ 0, 1, 0 }, { 1, 0, 0 }, 1.0), parts), 1);
+  EXPECT_EQ(region.FindParts(CreateBoundedRay({ 0, 1, 0 }, { 1, 0, 0 }, 1.0), parts), 1);
   EXPECT_EQ(parts[0].First, 0.0);
   EXPECT_EQ(parts[0].Last, 1.0);
-  EXPECT_EQ(region.FindParts(CreateRay({ 0, 0.5, 0 }, { 1, 0, 0 }, 1.0), parts), 0);
+  EXPECT_EQ(region.FindParts(CreateBoundedRay({ 0, 0.5, 0 }, { 1, 0, 0 }, 1.0), parts), 0);
 }
 
 TEST(ClipRegion, RaysWithoutAnEnd)
@@ -112,7 +112,7 @@ TEST(ClipRegion, RaysWithoutAnEnd)
   region.Boxes->Upper = glm::dvec3(1.0);
   region.Boxes->Kept = 1u << 13;
   const double infinity = std::numeric_limits<double>::infinity();
-  const rt::Ray ray = CreateRay({ -1.0, 0.5, 0.5 }, { 1.0, 0.0, 0.0 }, infinity);
+  const rt::Ray ray = CreateBoundedRay({ -1.0, 0.5, 0.5 }, { 1.0, 0.0, 0.0 }, infinity);
   rt::ClipRegion::Interval parts[rt::ClipRegion::MaxParts];
   ASSERT_EQ(region.FindParts(ray, parts), 1);
   EXPECT_NEAR(parts[0].First, 1.0, 1e-11);

@@ -19,11 +19,11 @@ namespace
 
 using Tracer = rt::IsosurfaceTracer<rt::LatticeField, MemoryStore>;
 
-const bricks::Index3 Points(37, 41, 34);
+const bricks::Index3 TracedPoints(37, 41, 34);
 
 TestVolume<float> CreateWaves()
 {
-  return TestVolume<float>(Points,
+  return TestVolume<float>(TracedPoints,
     [](int x, int y, int z)
     { return static_cast<float>(std::sin(0.4 * x) + std::sin(0.5 * y) + std::sin(0.3 * z)); });
 }

@@ -13,13 +13,13 @@
 namespace
 {
 
-const bricks::Index3 Cells(67, 45, 90);
+const bricks::Index3 WalkedCells(67, 45, 90);
 constexpr int Edge = 3;
 
 bricks::MacrocellHierarchy CreateHierarchy()
 {
   const bricks::BrickLattice lattice(
-    Cells + bricks::Index3(1), bricks::ScalarType::Float32, false, Edge);
+    WalkedCells + bricks::Index3(1), bricks::ScalarType::Float32, false, Edge);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   std::vector<bricks::ValueRange> ranges(lattice.GetBrickCount());
@@ -93,7 +93,7 @@ TEST(TestRangePredicate, RaysMeetTheBricksThatItWants)
   const bricks::MacrocellHierarchy hierarchy = CreateHierarchy();
   const std::vector<double> isovalues{ 0.35, 0.5, 0.9 };
   const rt::IsovaluePredicate mayHold(isovalues);
-  RandomRays generator(Cells, 3);
+  RandomRays generator(WalkedCells, 3);
   std::size_t bricks[2] = { 0, 0 };
   for (int i = 0; i < 700; ++i)
   {
@@ -103,7 +103,7 @@ TEST(TestRangePredicate, RaysMeetTheBricksThatItWants)
     double enter = ray.Min;
     double leave = ray.Max;
     ASSERT_TRUE(line.Set(&ray.Origin.x, &ray.Direction.x));
-    if (!line.Clip(Cells, enter, leave))
+    if (!line.Clip(WalkedCells, enter, leave))
     {
       continue;
     }
@@ -134,8 +134,9 @@ TEST(TestRangePredicate, BeamsMeetTheBricksThatItWants)
     for (int corner = 0; corner < 4; ++corner)
     {
       const double across[2] = { corner == 1 || corner == 2 ? 4.0 : 0.0, corner > 1 ? 4.0 : 0.0 };
-      const double origin[3] = { 0.5 * Cells.x - 100.0 * direction[0] + across[0],
-        0.5 * Cells.y - 100.0 * direction[1] + across[1], 0.5 * Cells.z - 100.0 * direction[2] };
+      const double origin[3] = { 0.5 * WalkedCells.x - 100.0 * direction[0] + across[0],
+        0.5 * WalkedCells.y - 100.0 * direction[1] + across[1],
+        0.5 * WalkedCells.z - 100.0 * direction[2] };
       ASSERT_TRUE(lines[corner].Set(origin, direction));
     }
     rt::RayBeam beam;

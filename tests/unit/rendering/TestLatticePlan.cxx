@@ -15,9 +15,9 @@
 namespace
 {
 
-using Extent = std::array<std::int64_t, 6>;
+using CellExtent = std::array<std::int64_t, 6>;
 
-bricks::PieceInfo MakePiece(const Extent& cells, int leaf = 0)
+bricks::PieceInfo MakePiece(const CellExtent& cells, int leaf = 0)
 {
   bricks::PieceInfo piece{};
   for (int axis = 0; axis < 3; ++axis)
@@ -31,7 +31,7 @@ bricks::PieceInfo MakePiece(const Extent& cells, int leaf = 0)
   return piece;
 }
 
-bricks::Box MakeBox(const Extent& cells)
+bricks::Box MakeBox(const CellExtent& cells)
 {
   return { { cells[0], cells[2], cells[4] }, { cells[1], cells[3], cells[5] } };
 }
@@ -91,8 +91,8 @@ TEST(LatticePlan, WhatDoesNotFitStaysApart)
 
 TEST(LatticePlan, OverlappingBlocksAreDifferentVolumesButCopiesOfOneImageAreNot)
 {
-  const Extent cells = { 0, 4, 0, 4, 0, 4 };
-  const Extent shifted = { 2, 6, 0, 4, 0, 4 };
+  const CellExtent cells = { 0, 4, 0, 4, 0, 4 };
+  const CellExtent shifted = { 2, 6, 0, 4, 0, 4 };
   EXPECT_EQ(
     bricks::LatticePlan({ MakePiece(cells, 1), MakePiece(shifted, 2) }).GetLattices().size(), 2u);
   EXPECT_EQ(

@@ -13,15 +13,15 @@ namespace bricks
 namespace
 {
 
-using Pieces = std::vector<std::shared_ptr<const VoxelSource>>;
+using PieceSources = std::vector<std::shared_ptr<const VoxelSource>>;
 
 std::unique_ptr<dsm::FragmentSource> CutConcurrently(
-  const BrickLattice& lattice, const Pieces& pieces)
+  const BrickLattice& lattice, const PieceSources& pieces)
 {
   std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
   for (const auto& piece : pieces)
   {
-    sources.push_back(std::make_unique<VoxelFragmentSource>(lattice, Pieces{ piece }));
+    sources.push_back(std::make_unique<VoxelFragmentSource>(lattice, PieceSources{ piece }));
   }
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
 }
@@ -29,7 +29,7 @@ std::unique_ptr<dsm::FragmentSource> CutConcurrently(
 } // namespace
 
 std::shared_ptr<VoxelField> PublishVolume(std::string_view what, const BrickLattice& lattice,
-  const Pieces& pieces, dsm::BlockStore& store, dsm::Messenger& messenger,
+  const PieceSources& pieces, dsm::BlockStore& store, dsm::Messenger& messenger,
   const VolumeSettings& settings, dsm::FunctionRef<void(double)> progress)
 {
   std::shared_ptr<VoxelField> field;

@@ -37,7 +37,7 @@ constexpr auto ReceiptKind =
 /// Matched messages that may be under way to this rank before it looks for more.
 constexpr std::size_t MaximumArrivingBytes = std::size_t(16) << 20;
 /// Lets a rank without memory take part in what all must agree on.
-constexpr std::size_t ReserveBytes = std::size_t(1) << 20;
+constexpr std::size_t SendReserveBytes = std::size_t(1) << 20;
 /// How long an ended transport waits, before it is closed, for the other ranks to take its last messages.
 constexpr std::chrono::seconds DrainTime(5);
 
@@ -252,11 +252,11 @@ private:
 
   void FillReserve() noexcept
   {
-    if (this->Reserve.capacity() < ReserveBytes)
+    if (this->Reserve.capacity() < SendReserveBytes)
     {
       try
       {
-        this->Reserve.reserve(ReserveBytes);
+        this->Reserve.reserve(SendReserveBytes);
       }
       catch (const std::bad_alloc&)
       {
@@ -276,7 +276,7 @@ private:
     }
     catch (const std::bad_alloc&)
     {
-      if (bytes > ReserveBytes)
+      if (bytes > SendReserveBytes)
       {
         return {};
       }

@@ -14,11 +14,11 @@ namespace
 {
 
 /// A surface in a border must not be lost to the rounding of where a ray meets the one and the other.
-constexpr double Rounding = 1e-12;
+constexpr double ClipRounding = 1e-12;
 
 double GetTolerance(double t)
 {
-  return Rounding * (1.0 + std::abs(t));
+  return ClipRounding * (1.0 + std::abs(t));
 }
 
 /// Moves the ends that are borders outwards.

@@ -12,7 +12,6 @@ namespace vol
 namespace
 {
 
-constexpr std::size_t AddressBytes = HdfBytes::Address;
 constexpr std::size_t MaskBytes = 4;
 
 } // namespace
@@ -134,22 +133,22 @@ std::optional<std::uint64_t> HdfChunkIndex::CountMost() const
 
 bool HdfChunkIndex::IsEntry(bool isFiltered, std::uint64_t entryBytes)
 {
-  constexpr std::size_t least = AddressBytes + 1 + MaskBytes;
-  constexpr std::size_t most = AddressBytes + 8 + MaskBytes;
-  return isFiltered ? entryBytes >= least && entryBytes <= most : entryBytes == AddressBytes;
+  constexpr std::size_t least = HdfBytes::Address + 1 + MaskBytes;
+  constexpr std::size_t most = HdfBytes::Address + 8 + MaskBytes;
+  return isFiltered ? entryBytes >= least && entryBytes <= most : entryBytes == HdfBytes::Address;
 }
 
 HdfChunk HdfChunkIndex::GetChunk(
   const HdfBytes& block, std::size_t place, std::size_t entryBytes) const
 {
-  HdfChunk chunk{ block.Get(place, AddressBytes), this->PlainBytes, 0 };
-  if (entryBytes > AddressBytes)
+  HdfChunk chunk{ block.Get(place, HdfBytes::Address), this->PlainBytes, 0 };
+  if (entryBytes > HdfBytes::Address)
   {
-    const std::size_t sizeBytes = entryBytes - AddressBytes - MaskBytes;
-    const std::uint64_t bytes = block.Get(place + AddressBytes, sizeBytes);
+    const std::size_t sizeBytes = entryBytes - HdfBytes::Address - MaskBytes;
+    const std::uint64_t bytes = block.Get(place + HdfBytes::Address, sizeBytes);
     chunk.Bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(bytes, UINT32_MAX));
     chunk.SkippedFilters =
-      static_cast<std::uint32_t>(block.Get(place + AddressBytes + sizeBytes, MaskBytes));
+      static_cast<std::uint32_t>(block.Get(place + HdfBytes::Address + sizeBytes, MaskBytes));
   }
   return chunk;
 }
@@ -211,7 +210,7 @@ bool HdfChunkIndex::ReadNode1(std::uint64_t address, int level)
   }
   const std::size_t axes = this->GetAxes();
   const std::size_t keyBytes = 8 + 8 * (axes + 1);
-  const std::size_t step = keyBytes + AddressBytes;
+  const std::size_t step = keyBytes + HdfBytes::Address;
   const std::uint64_t children = head->Get(6, 2);
   const std::optional<HdfBytes> list = this->Read(address + start, children * step);
   if (!list)
@@ -220,7 +219,7 @@ bool HdfChunkIndex::ReadNode1(std::uint64_t address, int level)
   }
   for (std::size_t key = 0; key < list->GetCount(); key += step)
   {
-    const std::uint64_t child = list->Get(key + keyBytes, AddressBytes);
+    const std::uint64_t child = list->Get(key + keyBytes, HdfBytes::Address);
     if (own > 0)
     {
       if (!this->ReadNode1(child, own - 1))

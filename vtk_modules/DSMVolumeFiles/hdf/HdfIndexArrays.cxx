@@ -10,10 +10,8 @@ namespace vol
 namespace
 {
 
-constexpr std::size_t AddressBytes = HdfBytes::Address;
-constexpr std::size_t ChecksumBytes = HdfBytes::Checksum;
 /// Before what a block of either array has of its own: signature, version, what it is for, and its header's address.
-constexpr std::size_t PrefixBytes = 4 + 1 + 1 + AddressBytes;
+constexpr std::size_t PrefixBytes = 4 + 1 + 1 + HdfBytes::Address;
 
 bool IsPowerOfTwo(std::uint64_t number)
 {
@@ -42,7 +40,7 @@ public:
     , LeastEntries(header.Get(9, 1))
     , LeastPointers(header.Get(10, 1))
     , PageBits(header.Get(11, 1))
-    , Index(header.Get(60, AddressBytes))
+    , Index(header.Get(60, HdfBytes::Address))
   {
     this->IsRight = HdfChunkIndex::IsEntry(header.Get(5, 1) == 1, this->EntryBytes) &&
       header.Get(5, 1) <= 1 && this->CountBits <= 64 && this->PageBits < 32 &&
@@ -62,9 +60,10 @@ public:
     const int direct = std::min(superBlocks, 2 * GetLog2(this->LeastPointers));
     const std::uint64_t pointers = 2 * (this->LeastPointers - 1);
     const std::size_t entries = PrefixBytes + this->InIndex * this->EntryBytes;
-    const std::size_t superPointers = entries + pointers * AddressBytes;
+    const std::size_t superPointers = entries + pointers * HdfBytes::Address;
     const auto index = this->Reader.ReadChecked(this->Index,
-      superPointers + static_cast<std::size_t>(superBlocks - direct) * AddressBytes + ChecksumBytes,
+      superPointers + static_cast<std::size_t>(superBlocks - direct) * HdfBytes::Address +
+        HdfBytes::Checksum,
       "EAIB");
     if (!index || !this->Reader.AddEntries(*index, PrefixBytes, this->EntryBytes, 0, this->InIndex))
     {
@@ -81,8 +80,8 @@ public:
         for (std::uint64_t at = 0; at < blocks; ++at, ++block)
         {
           if (block >= pointers ||
-            !this->ReadBlock(index->Get(entries + block * AddressBytes, AddressBytes), blockEntries,
-              number + at * blockEntries))
+            !this->ReadBlock(index->Get(entries + block * HdfBytes::Address, HdfBytes::Address),
+              blockEntries, number + at * blockEntries))
           {
             return false;
           }
@@ -91,8 +90,9 @@ public:
       else
       {
         const std::size_t place =
-          superPointers + static_cast<std::size_t>(super - direct) * AddressBytes;
-        if (!this->ReadSuperBlock(index->Get(place, AddressBytes), blocks, blockEntries, number))
+          superPointers + static_cast<std::size_t>(super - direct) * HdfBytes::Address;
+        if (!this->ReadSuperBlock(
+              index->Get(place, HdfBytes::Address), blocks, blockEntries, number))
         {
           return false;
         }
@@ -126,14 +126,15 @@ private:
     const std::size_t bits = PrefixBytes + this->OffsetBytes;
     const std::uint64_t bitBytes = blocks * ((pages + 7) / 8);
     const auto block = this->Reader.ReadChecked(
-      address, bits + bitBytes + blocks * AddressBytes + ChecksumBytes, "EASB");
+      address, bits + bitBytes + blocks * HdfBytes::Address + HdfBytes::Checksum, "EASB");
     if (!block)
     {
       return false;
     }
     for (std::uint64_t at = 0; at < blocks; ++at)
     {
-      const std::uint64_t data = block->Get(bits + bitBytes + at * AddressBytes, AddressBytes);
+      const std::uint64_t data =
+        block->Get(bits + bitBytes + at * HdfBytes::Address, HdfBytes::Address);
       const std::uint64_t first = number + at * blockEntries;
       if (pages == 0
           ? !this->ReadBlock(data, blockEntries, first)
@@ -158,7 +159,7 @@ private:
     }
     const std::size_t before = PrefixBytes + this->OffsetBytes;
     const auto block = this->Reader.ReadChecked(
-      address, before + entries * this->EntryBytes + ChecksumBytes, "EADB");
+      address, before + entries * this->EntryBytes + HdfBytes::Checksum, "EADB");
     return block && this->Reader.AddEntries(*block, before, this->EntryBytes, number, entries);
   }
 
@@ -166,7 +167,7 @@ private:
     const dsm::FunctionRef<bool(std::uint64_t page)>& isThere)
   {
     const std::uint64_t entries = std::uint64_t(1) << this->PageBits;
-    const std::uint64_t before = PrefixBytes + this->OffsetBytes + ChecksumBytes;
+    const std::uint64_t before = PrefixBytes + this->OffsetBytes + HdfBytes::Checksum;
     return address == HdfUndefined ||
       (this->Reader.ReadChecked(address, before, "EADB") &&
         this->Reader.AddPages(
@@ -204,7 +205,7 @@ bool HdfChunkIndex::ReadFixedArray(std::uint64_t address)
   const std::size_t entryBytes = header->Get(6, 1);
   const std::uint64_t pageBits = header->Get(7, 1);
   const std::uint64_t count = header->Get(8, 8);
-  const std::uint64_t block = header->Get(16, AddressBytes);
+  const std::uint64_t block = header->Get(16, HdfBytes::Address);
   if (header->Get(5, 1) > 1 || !IsEntry(header->Get(5, 1) == 1, entryBytes) || pageBits > 31 ||
     count > this->CountMost().value_or(0))
   {
@@ -218,12 +219,12 @@ bool HdfChunkIndex::ReadFixedArray(std::uint64_t address)
   if (count <= pageEntries)
   {
     const auto entries =
-      this->ReadChecked(block, PrefixBytes + count * entryBytes + ChecksumBytes, "FADB");
+      this->ReadChecked(block, PrefixBytes + count * entryBytes + HdfBytes::Checksum, "FADB");
     return entries && this->AddEntries(*entries, PrefixBytes, entryBytes, 0, count);
   }
   // A bit for each page: whether it is there.
   const std::uint64_t pages = (count - 1) / pageEntries + 1;
-  const std::uint64_t before = PrefixBytes + (pages + 7) / 8 + ChecksumBytes;
+  const std::uint64_t before = PrefixBytes + (pages + 7) / 8 + HdfBytes::Checksum;
   const auto bits = this->ReadChecked(block, before, "FADB");
   return bits &&
     this->AddPages(block + before, pageEntries, entryBytes, 0, count,

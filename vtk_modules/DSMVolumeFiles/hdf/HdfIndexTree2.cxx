@@ -10,9 +10,7 @@ namespace vol
 namespace
 {
 
-constexpr std::size_t AddressBytes = HdfBytes::Address;
-constexpr std::size_t ChecksumBytes = HdfBytes::Checksum;
-constexpr std::size_t PrefixBytes = 4 + 1 + 1; ///< prefix of a node: signature, version, type
+constexpr std::size_t NodePrefixBytes = 4 + 1 + 1; ///< prefix of a node: signature, version, type
 constexpr std::uint64_t MostLevels = 32;
 
 /// Bytes that hold any number up to this one, as the library counts them.
@@ -60,7 +58,7 @@ private:
 
   bool FindLevels()
   {
-    const std::size_t own = PrefixBytes + ChecksumBytes;
+    const std::size_t own = NodePrefixBytes + HdfBytes::Checksum;
     if (this->NodeBytes < own + this->RecordBytes)
     {
       return false;
@@ -72,7 +70,8 @@ private:
     {
       const std::uint64_t below = this->Levels.back().MostBelow;
       Level made;
-      made.PointerBytes = AddressBytes + this->CountBytes + (level > 1 ? CountBytesFor(below) : 0);
+      made.PointerBytes =
+        HdfBytes::Address + this->CountBytes + (level > 1 ? CountBytesFor(below) : 0);
       if (this->NodeBytes < own + made.PointerBytes + this->RecordBytes)
       {
         return false;
@@ -92,29 +91,29 @@ private:
   bool ReadNode(std::uint64_t address, std::uint64_t records, std::size_t level)
   {
     const Level& own = this->Levels[level];
-    const std::size_t children = PrefixBytes + records * this->RecordBytes;
+    const std::size_t children = NodePrefixBytes + records * this->RecordBytes;
     const std::size_t end = children + (level > 0 ? (records + 1) * own.PointerBytes : 0);
     if (records > own.MostRecords)
     {
       return false;
     }
     const auto node =
-      this->Reader.ReadChecked(address, end + ChecksumBytes, level > 0 ? "BTIN" : "BTLF");
+      this->Reader.ReadChecked(address, end + HdfBytes::Checksum, level > 0 ? "BTIN" : "BTLF");
     if (!node)
     {
       return false;
     }
     for (std::uint64_t record = 0; record < records; ++record)
     {
-      if (!this->AddRecord(*node, PrefixBytes + record * this->RecordBytes))
+      if (!this->AddRecord(*node, NodePrefixBytes + record * this->RecordBytes))
       {
         return false;
       }
     }
     for (std::size_t child = children; child < end; child += own.PointerBytes)
     {
-      if (!this->ReadNode(node->Get(child, AddressBytes),
-            node->Get(child + AddressBytes, this->CountBytes), level - 1))
+      if (!this->ReadNode(node->Get(child, HdfBytes::Address),
+            node->Get(child + HdfBytes::Address, this->CountBytes), level - 1))
       {
         return false;
       }
@@ -150,7 +149,8 @@ private:
 bool HdfChunkIndex::ReadTree2(std::uint64_t address)
 {
   const std::optional<HdfBytes> header = this->ReadChecked(address, 38, "BTHD");
-  return header && Tree(*this, *header).Read(header->Get(16, AddressBytes), header->Get(24, 2));
+  return header &&
+    Tree(*this, *header).Read(header->Get(16, HdfBytes::Address), header->Get(24, 2));
 }
 
 } // namespace vol

@@ -23,7 +23,7 @@ namespace
 {
 
 /// Files that stay open: those of a step, its neighbors, and of who still reads another.
-constexpr std::size_t MostOpen = 6;
+constexpr std::size_t MostOpenSteps = 6;
 
 /// Returns the stamp of the file at a step's path.
 std::uint64_t FindStampOfStep(const std::string& path, const OpenOptions& options)
@@ -133,7 +133,7 @@ public:
     {
       most = std::max(most, file->GetTableBytes());
     }
-    return most * std::min(MostOpen, this->Paths.size());
+    return most * std::min(MostOpenSteps, this->Paths.size());
   }
 
 private:
@@ -152,7 +152,7 @@ private:
     this->CheckSame(*file);
     this->CheckUnchanged(*file, this->Stamps[static_cast<std::size_t>(step)]);
     this->Open.emplace_front(step, file);
-    if (this->Open.size() > MostOpen)
+    if (this->Open.size() > MostOpenSteps)
     {
       this->Open.pop_back();
     }

@@ -17,7 +17,7 @@ namespace vol
 namespace
 {
 
-bricks::ScalarType ParseType(const HeaderText& header)
+bricks::ScalarType ParseElementType(const HeaderText& header)
 {
   using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "met_char", Type::Int8 },
@@ -76,7 +76,7 @@ std::shared_ptr<VolumeFile> OpenMetaImage(const std::string& path, const OpenOpt
   {
     values.Samples[static_cast<int>(axis)] = size[axis];
   }
-  values.Type = ParseType(header);
+  values.Type = ParseElementType(header);
   values.Components = header.GetInteger("elementnumberofchannels", 1);
   values.BigEndian =
     IsTrue(header, "binarydatabyteordermsb") || IsTrue(header, "elementbyteordermsb");

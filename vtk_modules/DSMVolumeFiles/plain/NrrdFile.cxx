@@ -19,7 +19,7 @@ namespace vol
 namespace
 {
 
-bricks::ScalarType ParseType(const HeaderText& header)
+bricks::ScalarType ParseNrrdType(const HeaderText& header)
 {
   using Type = bricks::ScalarType;
   static const std::map<std::string, Type> types = { { "signed char", Type::Int8 },
@@ -263,7 +263,7 @@ std::shared_ptr<VolumeFile> OpenNrrd(const std::string& path, const OpenOptions&
   {
     values.Samples[static_cast<int>(axis)] = sizes[domain[axis]];
   }
-  values.Type = ParseType(header);
+  values.Type = ParseNrrdType(header);
   values.Encoding = encoding;
   const std::string endian = ToLower(header.Get("endian"));
   values.BigEndian = endian == "big";

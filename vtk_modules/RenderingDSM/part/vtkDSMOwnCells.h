@@ -8,7 +8,7 @@
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/BlockSegment.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
-#include "DSMRayTracing/frame/FieldReader.h"
+#include "DSMRayTracing/scene/FieldReader.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"

@@ -25,7 +25,7 @@ namespace
 {
 
 /// One of the renderer's props, or a part of one that is an assembly.
-struct Part
+struct PropPart
 {
   vtkProp* Prop;
   vtkProp* Whole;      ///< that the renderer has
@@ -34,7 +34,7 @@ struct Part
   bool IsVisible() const { return this->Prop->GetVisibility() && this->Whole->GetVisibility(); }
 };
 
-/// Calls `use` for each Part of what a renderer has.
+/// Calls `use` for each PropPart of what a renderer has.
 template <class Use>
 void ForEachPart(vtkRenderer* renderer, const Use& use)
 {
@@ -45,14 +45,14 @@ void ForEachPart(vtkRenderer* renderer, const Use& use)
   {
     if (!vtkAssembly::SafeDownCast(prop) && !vtkPropAssembly::SafeDownCast(prop))
     {
-      use(Part{ prop, prop, nullptr });
+      use(PropPart{ prop, prop, nullptr });
       continue;
     }
     prop->InitPathTraversal();
     while (vtkAssemblyPath* path = prop->GetNextPath())
     {
       vtkAssemblyNode* last = path->GetLastNode();
-      use(Part{ last->GetViewProp(), prop, last->GetMatrix() });
+      use(PropPart{ last->GetViewProp(), prop, last->GetMatrix() });
     }
   }
 }
@@ -106,7 +106,7 @@ void vtkDSMSceneMembers::Find(vtkRenderer* renderer)
   this->Shown.clear();
   std::vector<std::unique_ptr<vtkDSMSceneMember>> kept;
   ForEachPart(renderer,
-    [&](const Part& part)
+    [&](const PropPart& part)
     {
       vtkAlgorithm* mapper = GetMapper(part.Prop);
       const auto known = std::find_if(this->States.begin(), this->States.end(),
@@ -197,7 +197,7 @@ std::vector<vtkProp*> vtkDSMSceneMembers::FindOthers(vtkRenderer* renderer) cons
 {
   std::vector<vtkProp*> others;
   ForEachPart(renderer,
-    [&](const Part& part)
+    [&](const PropPart& part)
     {
       const auto isProp = [&](const Member& member) { return member.Prop == part.Prop; };
       // Props without bounds of their own are not objects.

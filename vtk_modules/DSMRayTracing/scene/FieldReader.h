@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace rt
@@ -47,6 +48,10 @@ public:
   virtual std::vector<double> FindValues(
     const AnyField& field, const std::vector<glm::dvec3>& points) = 0;
 };
+
+/// Keeps references. For the stores of dsm::BlockStore; compiled where CreateSceneTracers is.
+template <class Store>
+std::unique_ptr<FieldReader> CreateFieldReader(Store& store, typename Store::Worker& worker);
 
 } // namespace rt
 
