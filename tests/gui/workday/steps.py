@@ -39,7 +39,11 @@ class Step:
 
 def get_steps(kind, version):
     """Of a day alone or with a server, with a version of ParaView as file_dialog.get_version gives it."""
-    return [step for step in STEPS if step.only in ("", kind) and not (step.until and version >= step.until)]
+    steps = [step for step in STEPS if step.only in ("", kind) and not (step.until and version >= step.until)]
+    for step in steps:
+        if kind == "alone" and step.look == "none":
+            step.looks = 1  # there are no ranks whose memory is looked at
+    return steps
 
 
 def step(name, events=(), look="compare", only="", looks=1, until=None):
@@ -62,7 +66,7 @@ def menu(name, action, *submenus):
 
 
 def delete_all(name, only=""):
-    """What the ranks then hold is noted two seconds later, when memory has gone back to the system."""
+    """What a server's ranks then hold is noted two seconds later, when memory has gone back to the system."""
     events_only(name, menu("menu_Edit", "actionDelete_All"), look="none", only=only, looks=20)
 
 
@@ -493,8 +497,8 @@ def load_state(simple):
 
 
 delete_all("Delete All a third time")
-events_only("Load State again", LOAD_STATE, look="like Load State")
-delete_all("Delete All at last")
+events_only("Load State again", LOAD_STATE, look="like Load State", only="server")
+delete_all("Delete All at last", only="server")
 
 
 # -- The server goes, and comes back -------------------------------------------------------------------
