@@ -1,40 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Reads the table of settings, and makes from it what needs them. A program that includes this has, for each setting
+# Reads the tables of settings, and makes from them what needs them. A program that includes this has, for each setting
 # NAME, the variables DSM_NAME_LABEL and so on, and all names in DSM_SETTINGS.
 #
 # dsm_setting(NAME OWNER owner TYPE type ... TEXT tooltip)
-#   OWNER    scene: one value for all that a view shows; ranks: one for all views; dataset: each has its own
-#   METHOD   Set<METHOD> in C++; NAME by default. The property is DSM<NAME>.
-#   TYPE     bool, int, double, enum or directory
+#   OWNER    scene: one value for all that a view shows; ranks: one for all views; dataset: each has its own;
+#            voxels, volume, slices, mesh: a property of displays of volumes, of those as DSM Volume or DSM Slices only,
+#            or of meshes
+#   METHOD   Set<METHOD> in C++ (Select<METHOD> in displays, of an array); NAME by default. The property is DSM<NAME>.
+#   TYPE     bool, int, double, enum, directory, range (two numbers) or array (its name)
 #   DEFAULT  value
 #   RANGE    least and greatest valid number; without the second, unlimited
 #   SLIDER   range of the panel's slider, where it has one
 #   CHOICES  numbers that the panel's slider offers instead
 #   ENTRIES  of an enum: a name in C++ and a text for each value from 0
-#   NEEDS    light: no effect on a volume without Shade; no_volume: none on a volume
+#   ARRAYS   of an array: domain of the display's Input that has the arrays to choose from
+#   WHEN     conditions, all of which must hold for the panel to show it; ENABLED: for it to be enabled. See dsm_when.
 #   PANEL    first: below Representation; default or advanced: in the group Ray Tracing. Without: not in the panel.
+#            Properties of displays are default or advanced.
+#   GROUP    of properties of displays: cut for Cut Faces. Without: below Representation (voxels), or the owner's own.
 #   ZERO     what the value 0 means, on the settings page
 #   PAGE_DEFAULT, PAGE_ENTRIES  of what is no setting of the ranks, but on the settings page: default, number of entries
+#   OWN_METHOD  the class of the display has the method itself; else it is the mapper's, which displays forward to
+#   DETAILS  what the method's comment says beside TEXT
 set(DSM_SETTINGS)
 function (dsm_setting name)
-  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL NEEDS ZERO PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT)
-  set(lists RANGE SLIDER ENTRIES)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "${keys}" "${lists}")
+  set(keys OWNER METHOD TYPE DEFAULT LABEL PANEL GROUP ARRAYS ZERO PAGE_DEFAULT PAGE_ENTRIES CHOICES TEXT DETAILS)
+  set(lists RANGE SLIDER ENTRIES WHEN ENABLED)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "OWN_METHOD" "${keys}" "${lists}")
   if (NOT arg_METHOD)
     set(arg_METHOD "${name}")
   endif ()
-  if (arg_TEXT MATCHES ";" OR NOT arg_OWNER MATCHES "^(scene|ranks|dataset)$")
-    message(FATAL_ERROR "Setting ${name}: the text has a semicolon, or the owner is unknown.")
+  if (NOT arg_GROUP)
+    set(arg_GROUP "${arg_OWNER}")
+  endif ()
+  if (arg_TEXT MATCHES ";" OR arg_UNPARSED_ARGUMENTS
+      OR NOT arg_OWNER MATCHES "^(scene|ranks|dataset|voxels|volume|slices|mesh)$")
+    message(FATAL_ERROR "Setting ${name}: the text has a semicolon, or a word or the owner is unknown.")
   endif ()
   string(REGEX REPLACE "[ \n]+" " " arg_TEXT "${arg_TEXT}")
-  foreach (key IN LISTS keys lists)
+  string(REGEX REPLACE "[ \n]+" " " arg_DETAILS "${arg_DETAILS}")
+  foreach (key IN LISTS keys lists ITEMS OWN_METHOD)
     set(DSM_${name}_${key} "${arg_${key}}" PARENT_SCOPE)
   endforeach ()
   set(DSM_SETTINGS ${DSM_SETTINGS} ${name} PARENT_SCOPE)
 endfunction ()
-include("${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/options/settings.cmake")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-  "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/options/settings.cmake")
+foreach (table IN ITEMS options/settings mapper/properties)
+  include("${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/${table}.cmake")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+    "${PROJECT_SOURCE_DIR}/vtk_modules/RenderingDSM/${table}.cmake")
+endforeach ()
 
 # Names of the settings that owners have, in the table's order.
 function (dsm_settings_of result)
@@ -47,14 +61,18 @@ function (dsm_settings_of result)
   set(${result} ${names} PARENT_SCOPE)
 endfunction ()
 
-# Makes the variables argument, member and kept of a setting: its types in C++, and the valid value of `value`.
+# Makes the variables argument, member and kept of a setting: its types in C++, and the valid value of `value`. Numbers
+# that have a range have the variables least and most.
 macro (dsm_describe_in_cxx name)
   set(argument "${DSM_${name}_TYPE}")
   set(kept "value")
   set(least "")
+  set(most "")
   if (argument STREQUAL "directory")
     set(argument "const char*")
     set(kept "value ? value : \"\"")
+  elseif (argument STREQUAL "array")
+    set(argument std::string)
   elseif (DSM_${name}_ENTRIES)
     set(argument int)
     list(LENGTH DSM_${name}_ENTRIES most)
@@ -74,6 +92,20 @@ macro (dsm_describe_in_cxx name)
   string(REPLACE "const char*" "std::string" member "${argument}")
 endmacro ()
 
+# The declaration of a setting's enumeration. Empty if it has none.
+function (dsm_enumerate result name type)
+  set(constants "")
+  set(entries "${DSM_${name}_ENTRIES}")
+  while (entries)
+    list(POP_FRONT entries constant text)
+    string(APPEND constants "    ${constant}, ///< ${text}\n")
+  endwhile ()
+  if (constants)
+    set(constants "  enum ${type}\n  {\n${constants}  };\n")
+  endif ()
+  set(${result} "${constants}" PARENT_SCOPE)
+endfunction ()
+
 # Writes the sources of vtkDSM<kind>Options and adds them to the variables headers and sources.
 function (dsm_write_options DSM_KIND DSM_BRIEF DSM_DETAILS)
   foreach (part IN ITEMS DECLARATIONS DEFINITIONS MEMBERS HANDED_OVER PRINTED)
@@ -86,15 +118,8 @@ function (dsm_write_options DSM_KIND DSM_BRIEF DSM_DETAILS)
     set(method "${DSM_${name}_METHOD}")
     set(default "{ ${DSM_${name}_DEFAULT} }")
     string(REPLACE "{  }" "{}" default "${default}")
-    set(other "")
-    if (DSM_${name}_ENTRIES)
-      set(entries "${DSM_${name}_ENTRIES}")
-      while (entries)
-        list(POP_FRONT entries constant text)
-        string(APPEND other "    ${constant}, ///< ${text}\n")
-      endwhile ()
-      set(other "  enum ${name}Type\n  {\n${other}  };\n")
-    elseif (argument STREQUAL "bool")
+    dsm_enumerate(other ${name} ${name}Type)
+    if (argument STREQUAL "bool")
       set(other "  vtkBooleanMacro(${method}, bool);\n")
     endif ()
     string(APPEND DSM_DECLARATIONS "\n  ///@{\n  /**\n   * ${DSM_${name}_TEXT}\n   */\n"
@@ -143,6 +168,95 @@ ${argument} ${class}::Get${method}() const
   set(sources ${sources} "${CMAKE_CURRENT_BINARY_DIR}/${class}.cxx" PARENT_SCOPE)
 endfunction ()
 
+# Writes the header of vtkDSM<kind>DisplayMapper, the base class of a mapper with the methods of owners' properties, and
+# adds it to the variable headers.
+function (dsm_write_display_mapper DSM_KIND DSM_SUPERCLASS)
+  foreach (part IN ITEMS DECLARATIONS MEMBERS COPIED PRINTED)
+    set(DSM_${part} "")
+  endforeach ()
+  dsm_settings_of(names ${ARGN})
+  foreach (name IN LISTS names)
+    if (DSM_${name}_OWN_METHOD)
+      continue ()
+    endif ()
+    dsm_describe_in_cxx(${name})
+    set(method "${DSM_${name}_METHOD}")
+    set(members ${method})
+    set(set "vtkSetMacro(${method}, ${argument});")
+    set(get "vtkGetMacro(${method}, ${argument});")
+    set(member "${argument} ${method}{ ${DSM_${name}_DEFAULT} };")
+    if (DSM_${name}_TYPE STREQUAL "range")
+      set(set "vtkSetVector2Macro(${method}, double);")
+      set(get "vtkGetVector2Macro(${method}, double);")
+      string(REPLACE " " ", " default "${DSM_${name}_DEFAULT}")
+      set(member "double ${method}[2] = { ${default} };")
+    elseif (DSM_${name}_TYPE STREQUAL "array")
+      if (NOT DSM_${name}_ARRAYS MATCHES "point")
+        list(APPEND members ${method}OnCells)
+        string(APPEND get "\n  vtkSetMacro(${method}OnCells, bool);\n  vtkGetMacro(${method}OnCells, bool);")
+        string(APPEND member "\n  bool ${method}OnCells = false;")
+      endif ()
+    elseif (argument STREQUAL "bool")
+      string(APPEND get "\n  vtkBooleanMacro(${method}, bool);")
+    elseif (NOT least STREQUAL "")
+      set(set "vtkSetClampMacro(${method}, ${argument}, ${least}, ${most});")
+    endif ()
+    dsm_enumerate(enum ${name} ${name}s)
+    string(STRIP "${DSM_${name}_TEXT} ${DSM_${name}_DETAILS}" text)
+    string(APPEND DSM_DECLARATIONS "\n  ///@{\n  /**\n   * ${text}\n   */\n"
+      "${enum}  ${set}\n  ${get}\n  ///@}\n")
+    string(APPEND DSM_MEMBERS "  ${member}\n")
+    foreach (member IN LISTS members)
+      string(APPEND DSM_COPIED "      this->Set${member}(other->${member});\n")
+      set(value "this->${member}")
+      if (DSM_${name}_TYPE STREQUAL "range")
+        set(value "${value}[0] << \" \" << ${value}[1]")
+      endif ()
+      string(APPEND DSM_PRINTED "    os << indent << \"${member}: \" << ${value} << \"\\n\";\n")
+    endforeach ()
+  endforeach ()
+  set(header "${CMAKE_CURRENT_BINARY_DIR}/vtkDSM${DSM_KIND}DisplayMapper.h")
+  configure_file(mapper/vtkDSMDisplayMapper.h.in "${header}" @ONLY)
+  set(headers ${headers} "${header}" PARENT_SCOPE)
+endfunction ()
+
+# Writes the header of vtkPVDSM<kind>Display, the base class of a display, with methods that set owners' properties of
+# its mapper, and adds it to the variable headers.
+function (dsm_write_display DSM_KIND DSM_SUPERCLASS)
+  set(DSM_METHODS "")
+  set(mapper "this->Get${DSM_KIND}Mapper()")
+  dsm_settings_of(names ${ARGN})
+  foreach (name IN LISTS names)
+    if (DSM_${name}_OWN_METHOD)
+      continue ()
+    endif ()
+    dsm_describe_in_cxx(${name})
+    set(method "Set${DSM_${name}_METHOD}")
+    set(setter "${method}")
+    set(parameters "${argument} value")
+    set(effect "${mapper}->${method}(value);")
+    if (DSM_${name}_TYPE STREQUAL "range")
+      set(parameters "double least, double most")
+      set(effect "${mapper}->${method}(least, most);")
+    elseif (DSM_${name}_TYPE STREQUAL "array")
+      # "None" is the word that the panel offers beside the arrays.
+      set(setter "Select${DSM_${name}_METHOD}")
+      set(association "")
+      set(effect "${mapper}->${method}(name && std::strcmp(name, \"None\") != 0 ? name : \"\");")
+      if (NOT DSM_${name}_ARRAYS MATCHES "point")
+        set(association " association")
+        string(APPEND effect
+          "\n    ${mapper}->${method}OnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);")
+      endif ()
+      set(parameters "int, int, int, int${association}, const char* name")
+    endif ()
+    string(APPEND DSM_METHODS "  void ${setter}(${parameters})\n  {\n    ${effect}\n  }\n")
+  endforeach ()
+  set(header "${CMAKE_CURRENT_BINARY_DIR}/vtkPVDSM${DSM_KIND}Display.h")
+  configure_file(displays/vtkPVDSMDisplay.h.in "${header}" @ONLY)
+  set(headers ${headers} "${header}" PARENT_SCOPE)
+endfunction ()
+
 # Writes the sources of vtkPVDSM<kind>Options, likewise: the methods that ParaView calls, which knows those of the
 # plugin's own classes only, and says where numbers are out of range. Other arguments as of dsm_write_options.
 function (dsm_write_paraview_options DSM_KIND)
@@ -174,127 +288,6 @@ function (dsm_write_paraview_options DSM_KIND)
   set(headers ${headers} "${CMAKE_CURRENT_BINARY_DIR}/${class}.h" PARENT_SCOPE)
   set(sources ${sources} "${CMAKE_CURRENT_BINARY_DIR}/${class}.cxx" PARENT_SCOPE)
 endfunction ()
-
-# Whether a setting is on the settings page.
-macro (dsm_is_on_page result name)
-  set(${result} FALSE)
-  if (DSM_${name}_OWNER STREQUAL "ranks" OR NOT "${DSM_${name}_PAGE_DEFAULT}" STREQUAL "")
-    set(${result} TRUE)
-  endif ()
-endmacro ()
-
-# The definition of a setting's property, of displays or, where isPage, of the settings page.
-function (dsm_define_property result name isPage)
-  set(type "${DSM_${name}_TYPE}")
-  set(default "${DSM_${name}_DEFAULT}")
-  set(entries "${DSM_${name}_ENTRIES}")
-  set(label "${DSM_${name}_LABEL}")
-  if (isPage AND DSM_${name}_ZERO)
-    string(APPEND label ", 0 = ${DSM_${name}_ZERO}")
-  endif ()
-  set(command "Set${DSM_${name}_METHOD}")
-  set(kind Int)
-  set(domain "")
-  set(hints "")
-  if (type STREQUAL "directory")
-    set(kind String)
-    if (isPage)
-      set(domain "<FileListDomain name=\"directory\" />")
-      set(hints "<UseDirectoryName />")
-    endif ()
-  elseif (DSM_${name}_CHOICES)
-    set(kind Double)
-    set(command "${command}Choice")
-    set(domain "<DiscreteDoubleDomain name=\"choices\" values=\"${DSM_${name}_CHOICES}\" />")
-  elseif (type STREQUAL "bool")
-    set(domain "<BooleanDomain name=\"bool\" />")
-  elseif (type STREQUAL "enum")
-    set(value 0)
-    while (entries AND NOT (isPage AND value EQUAL "${DSM_${name}_PAGE_ENTRIES}"))
-      list(POP_FRONT entries constant text)
-      string(APPEND domain "<Entry text=\"${text}\" value=\"${value}\" />")
-      math(EXPR value "${value} + 1")
-    endwhile ()
-    set(domain "<EnumerationDomain name=\"enum\">${domain}</EnumerationDomain>")
-  else ()
-    if (type STREQUAL "double")
-      set(kind Double)
-    endif ()
-    set(range ${DSM_${name}_SLIDER})
-    if (NOT DSM_${name}_SLIDER)
-      set(range ${DSM_${name}_RANGE})
-    endif ()
-    list(GET range 0 least)
-    set(most "")
-    list(LENGTH range length)
-    if (length GREATER 1)
-      list(GET range 1 most)
-      set(most "max=\"${most}\" ")
-    endif ()
-    set(domain "<${kind}RangeDomain ${most}min=\"${least}\" name=\"range\" />")
-  endif ()
-  dsm_is_on_page(isOnPage ${name})
-  set(attributes "")
-  if (isPage)
-    if (NOT "${DSM_${name}_PAGE_DEFAULT}" STREQUAL "")
-      set(default "${DSM_${name}_PAGE_DEFAULT}")
-    endif ()
-  else ()
-    set(attributes " command=\"${command}\"")
-    if (DSM_${name}_OWNER STREQUAL "dataset")
-      string(APPEND hints "<DSMOfDataset />")
-    endif ()
-    if (DSM_${name}_PANEL STREQUAL "first")
-      string(APPEND hints "${DSM_WHEN_TRACED}")
-    endif ()
-    if (DSM_${name}_NEEDS)
-      string(TOUPPER "DSM_WHEN_${DSM_${name}_NEEDS}" when)
-      string(APPEND hints "${${when}}")
-    endif ()
-    if (isOnPage)
-      string(APPEND attributes " no_custom_default=\"1\"")
-      # A view's own word counts; the page has that of the ranks.
-      set(unlink 1)
-      if (DSM_${name}_OWNER STREQUAL "ranks")
-        set(unlink 0)
-      endif ()
-      string(APPEND hints "<PropertyLink group=\"settings\" property=\"DSM${name}\""
-        " proxy=\"DSMRayTracerSettings\" unlink_if_modified=\"${unlink}\" />")
-    endif ()
-  endif ()
-  string(REPLACE "<" "&lt;" text "${DSM_${name}_TEXT}")
-  set(${result} "<${kind}VectorProperty name=\"DSM${name}\" label=\"${label}\"${attributes}\
- number_of_elements=\"1\" default_values=\"${default}\">${domain}\
-<Documentation>${text}</Documentation><Hints>${hints}</Hints></${kind}VectorProperty>\n" PARENT_SCOPE)
-endfunction ()
-
-# Makes what the definitions of proxies have of the settings. Of light and memory each: the properties of displays
-# (DSM_..._PROPERTIES) and their names (DSM_..._NAMES). The page's properties (DSM_PAGE_PROPERTIES). Of the panel: those
-# below Representation (DSM_FIRST_NAMES), of the group Ray Tracing (DSM_GROUP_NAMES), and hidden (DSM_HIDDEN_NAMES).
-macro (dsm_define_settings)
-  foreach (name IN LISTS DSM_SETTINGS)
-    set(which LIGHT)
-    if (DSM_${name}_OWNER STREQUAL "ranks")
-      set(which MEMORY)
-    endif ()
-    dsm_define_property(text ${name} FALSE)
-    string(APPEND DSM_${which}_PROPERTIES "${text}")
-    string(APPEND DSM_${which}_NAMES "<Property name=\"DSM${name}\" />\n")
-    dsm_is_on_page(isOnPage ${name})
-    if (isOnPage)
-      dsm_define_property(text ${name} TRUE)
-      string(APPEND DSM_PAGE_PROPERTIES "${text}")
-    endif ()
-    set(panel "${DSM_${name}_PANEL}")
-    if (panel STREQUAL "first")
-      string(APPEND DSM_FIRST_NAMES "<Property name=\"DSM${name}\" />\n")
-    elseif (panel)
-      string(APPEND DSM_GROUP_NAMES "<Property name=\"DSM${name}\" panel_visibility=\"${panel}\" />\n")
-    else ()
-      string(APPEND DSM_HIDDEN_NAMES "<Property name=\"DSM${name}\" panel_visibility=\"never\" />\n")
-    endif ()
-  endforeach ()
-endmacro ()
 
 # dsm_counter(NAME UNIT unit VALUE expression ... TEXT description)
 #   UNIT      Count, Bytes or Seconds
@@ -337,7 +330,8 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
 # Writes docs/properties.md, from its template, to a file, except for the rows that tests/docs/make_properties.py adds
 # from xml/.
 function (dsm_write_properties_document file)
-  foreach (name IN LISTS DSM_SETTINGS)
+  dsm_settings_of(names scene ranks dataset)
+  foreach (name IN LISTS names)
     string(TOUPPER "${DSM_${name}_OWNER}" owner)
     set(default "`${DSM_${name}_DEFAULT}`")
     set(values "")

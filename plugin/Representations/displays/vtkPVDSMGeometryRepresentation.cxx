@@ -73,6 +73,11 @@ vtkDSMPolyDataMapper* vtkPVDSMGeometryRepresentation::GetMapper() const
   return static_cast<vtkDSMPolyDataMapper*>(this->Mapper);
 }
 
+vtkDSMMeshDisplayMapper* vtkPVDSMGeometryRepresentation::GetMeshMapper() const
+{
+  return this->GetMapper();
+}
+
 int vtkPVDSMGeometryRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
@@ -218,23 +223,6 @@ void vtkPVDSMGeometryRepresentation::SetPickable(int pickable)
 void vtkPVDSMGeometryRepresentation::SetShowEdges(bool show)
 {
   this->ShowEdges = show;
-}
-
-void vtkPVDSMGeometryRepresentation::SetLineRadius(double radius)
-{
-  this->GetMapper()->SetLineRadius(radius);
-}
-
-void vtkPVDSMGeometryRepresentation::SetPointRadius(double radius)
-{
-  this->GetMapper()->SetPointRadius(radius);
-}
-
-void vtkPVDSMGeometryRepresentation::SelectRadiusArray(int, int, int, int, const char* name)
-{
-  const std::string array = name ? name : "";
-  // The word that the panel offers beside the arrays.
-  this->GetMapper()->SetRadiusArray(array == "None" ? "" : array);
 }
 
 std::vector<vtkSmartPointer<vtkPolyData>> vtkPVDSMGeometryRepresentation::GetTriangles()

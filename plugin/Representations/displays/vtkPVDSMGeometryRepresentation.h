@@ -12,8 +12,8 @@
 #ifndef vtkPVDSMGeometryRepresentation_h
 #define vtkPVDSMGeometryRepresentation_h
 
-#include "vtkGeometryRepresentationWithFaces.h"
 #include "vtkPVDSMExportSource.h"
+#include "vtkPVDSMMeshDisplay.h"
 #include "vtkPVDSMTracedDisplay.h"       // for ivars
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
@@ -30,12 +30,12 @@ class vtkPVDSMLightOptions;
 class vtkPVDSMMemoryOptions;
 
 class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMGeometryRepresentation
-  : public vtkGeometryRepresentationWithFaces
+  : public vtkPVDSMMeshDisplay
   , public vtkPVDSMExportSource
 {
 public:
   static vtkPVDSMGeometryRepresentation* New();
-  vtkTypeMacro(vtkPVDSMGeometryRepresentation, vtkGeometryRepresentationWithFaces);
+  vtkTypeMacro(vtkPVDSMGeometryRepresentation, vtkPVDSMMeshDisplay);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   int ProcessViewRequest(
@@ -48,15 +48,6 @@ public:
    * Draws the edges of polygons on the surface; off by default.
    */
   void SetShowEdges(bool show);
-
-  ///@{
-  /**
-   * Forwarded to vtkDSMPolyDataMapper.
-   */
-  void SetLineRadius(double radius);
-  void SetPointRadius(double radius);
-  void SelectRadiusArray(int index, int port, int connection, int association, const char* name);
-  ///@}
 
   ///@{
   /**
@@ -135,6 +126,7 @@ protected:
   /// Gives an actor, which exporters are to have, the look of what is traced.
   virtual void SetExportLook(vtkActor* actor, vtkMapper* mapper);
   vtkDSMPolyDataMapper* GetMapper() const;
+  vtkDSMMeshDisplayMapper* GetMeshMapper() const override;
 
   std::unique_ptr<vtkPVDSMTracedDisplay> Display;
 

@@ -50,6 +50,11 @@ vtkPVDSMImageRepresentation::vtkPVDSMImageRepresentation()
 
 vtkPVDSMImageRepresentation::~vtkPVDSMImageRepresentation() = default;
 
+vtkDSMVolumeDisplayMapper* vtkPVDSMImageRepresentation::GetVolumeMapper() const
+{
+  return this->VolumeMapper;
+}
+
 void vtkPVDSMImageRepresentation::ShowVolume()
 {
   this->Display->Show(this->Volume, this->VolumeMapper, "Cutting the volume into bricks");
@@ -454,16 +459,6 @@ void vtkPVDSMImageRepresentation::SetIsoComponent(int component)
   this->VolumeMapper->SetIsoComponent(component);
 }
 
-void vtkPVDSMImageRepresentation::SetIgnoreValues(bool ignore)
-{
-  this->VolumeMapper->SetIgnoreValues(ignore);
-}
-
-void vtkPVDSMImageRepresentation::SetValidRange(double lowest, double highest)
-{
-  this->VolumeMapper->SetValidRange(lowest, highest);
-}
-
 void vtkPVDSMImageRepresentation::SetNumberOfIsoValues(int number)
 {
   this->IsoValues.resize(std::max(number, 0), 0.0);
@@ -504,21 +499,6 @@ void vtkPVDSMImageRepresentation::ChooseIsoValues()
   {
     this->VolumeMapper->SetIsoValue(index, shown[index]);
   }
-}
-
-void vtkPVDSMImageRepresentation::SetCap(bool cap)
-{
-  this->VolumeMapper->SetCapping(cap);
-}
-
-void vtkPVDSMImageRepresentation::SetCapSide(int side)
-{
-  this->VolumeMapper->SetCapSide(side);
-}
-
-void vtkPVDSMImageRepresentation::SetCapOpacityFromMap(bool fromMap)
-{
-  this->VolumeMapper->SetCapOpacity(fromMap);
 }
 
 void vtkPVDSMImageRepresentation::SetLookupTable(vtkScalarsToColors* table)

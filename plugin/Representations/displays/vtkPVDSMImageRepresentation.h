@@ -10,9 +10,9 @@
 #ifndef vtkPVDSMImageRepresentation_h
 #define vtkPVDSMImageRepresentation_h
 
-#include "vtkNew.h" // for ivars
-#include "vtkPVDSMGeometryRepresentation.h"
-#include "vtkPVDSMSlicing.h"             // for ivars
+#include "vtkNew.h"          // for ivars
+#include "vtkPVDSMSlicing.h" // for ivars
+#include "vtkPVDSMVolumeDisplay.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
 
 #include <array>   // for ivars
@@ -27,12 +27,11 @@ class vtkPVDSMVolumePlaces;
 class vtkScalarsToColors;
 class vtkVolume;
 
-class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation
-  : public vtkPVDSMGeometryRepresentation
+class VTKREPRESENTATIONSDSM_EXPORT vtkPVDSMImageRepresentation : public vtkPVDSMVolumeDisplay
 {
 public:
   static vtkPVDSMImageRepresentation* New();
-  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkPVDSMGeometryRepresentation);
+  vtkTypeMacro(vtkPVDSMImageRepresentation, vtkPVDSMVolumeDisplay);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ShownParts
@@ -88,8 +87,6 @@ public:
    */
   void SelectIsoArray(int index, int port, int connection, int association, const char* name);
   void SetIsoComponent(int component);
-  void SetIgnoreValues(bool ignore);
-  void SetValidRange(double lowest, double highest);
   void SetLookupTable(vtkScalarsToColors* table) override;
   void SetMapScalars(int map) override;
   ///@}
@@ -114,16 +111,6 @@ public:
   void SetOrigin(double x, double y, double z) override;
   void SetScale(double x, double y, double z) override;
   void SetUserTransform(const double matrix[16]) override;
-  ///@}
-
-  ///@{
-  /**
-   * Shows the faces that the plane and the box cut. Isosurfaces have them on one side
-   * (vtkDSMVolumeMapper::CapSides); volumes may have them with the opacities of their opacity function.
-   */
-  void SetCap(bool cap);
-  void SetCapSide(int side);
-  void SetCapOpacityFromMap(bool fromMap);
   ///@}
 
   ///@{
@@ -191,6 +178,7 @@ protected:
   void RestoreSurfaceInput(vtkDataObject* data);
   /// For constructors: selections find the places that the pixels of a picture show, and no isosurfaces.
   void SelectByPlaces();
+  vtkDSMVolumeDisplayMapper* GetVolumeMapper() const override;
 
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkDSMVolumeMapper> VolumeMapper;

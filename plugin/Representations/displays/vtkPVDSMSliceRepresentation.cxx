@@ -34,16 +34,6 @@ void vtkPVDSMSliceRepresentation::ChooseOpacity()
   this->VolumeMapper->SetSliceOpacity(this->OpacityFromMap ? this->ScalarOpacity.Get() : nullptr);
 }
 
-void vtkPVDSMSliceRepresentation::SetSliceLighting(bool isLit)
-{
-  this->VolumeMapper->SetSliceLighting(isLit);
-}
-
-void vtkPVDSMSliceRepresentation::SetInterpolateSlices(bool interpolate)
-{
-  this->VolumeMapper->SetInterpolateSlices(interpolate);
-}
-
 std::string vtkPVDSMSliceRepresentation::GetExportObstacle() const
 {
   return "DSM Slices are not exported. Export those of the filter Slice, or save a screenshot.";

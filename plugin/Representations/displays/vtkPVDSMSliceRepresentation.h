@@ -31,14 +31,6 @@ public:
   void SetOpacityFromMap(bool fromMap);
   ///@}
 
-  ///@{
-  /**
-   * Forwarded to vtkDSMVolumeMapper.
-   */
-  void SetSliceLighting(bool isLit);
-  void SetInterpolateSlices(bool interpolate);
-  ///@}
-
   std::string GetExportObstacle() const override;
 
 protected:

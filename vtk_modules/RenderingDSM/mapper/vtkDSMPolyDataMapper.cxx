@@ -142,9 +142,6 @@ void vtkDSMPolyDataMapper::ShallowCopy(vtkAbstractMapper* mapper)
   {
     *this->Original = *other->Original;
     this->SetCompositeDataDisplayAttributes(other->BlockAttributes);
-    this->SetLineRadius(other->LineRadius);
-    this->SetPointRadius(other->PointRadius);
-    this->SetRadiusArray(other->RadiusArray);
     this->SetLightOptions(other->LightOptions);
     this->SetMemoryOptions(other->MemoryOptions);
     this->SetMakesScene(other->MakesScene);
@@ -163,8 +160,5 @@ void vtkDSMPolyDataMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "CompositeDataDisplayAttributes: " << this->BlockAttributes.Get() << "\n";
-  os << indent << "LineRadius: " << this->LineRadius << "\n";
-  os << indent << "PointRadius: " << this->PointRadius << "\n";
-  os << indent << "RadiusArray: " << this->RadiusArray << "\n";
   os << indent << "MakesScene: " << this->MakesScene << "\n";
 }

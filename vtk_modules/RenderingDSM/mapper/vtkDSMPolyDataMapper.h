@@ -17,6 +17,8 @@
  * color array or a block's look puts the mesh in bricks anew, and so does EdgeVisibility the first
  * time that it is on, where there are polygons other than triangles.
  *
+ * vtkDSMMeshDisplayMapper has the settings that ParaView's displays have as properties.
+ *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all that it shows together when
  * the renderer starts to render, on all ranks at once. Every rank must have the same actors, in the
  * same order, with the same settings; only the input differs.
@@ -25,12 +27,11 @@
 #ifndef vtkDSMPolyDataMapper_h
 #define vtkDSMPolyDataMapper_h
 
-#include "vtkPolyDataMapper.h"
+#include "vtkDSMMeshDisplayMapper.h"
 #include "vtkRenderingDSMModule.h" // for the export macro
 #include "vtkSmartPointer.h"       // for ivars
 
 #include <memory> // for ivars
-#include <string> // for ivars
 
 class vtkCompositeDataDisplayAttributes;
 class vtkDSMKnownBounds;
@@ -38,11 +39,11 @@ class vtkDSMLightOptions;
 class vtkDSMMemoryOptions;
 class vtkDSMOriginalData;
 
-class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkPolyDataMapper
+class VTKRENDERINGDSM_EXPORT vtkDSMPolyDataMapper : public vtkDSMMeshDisplayMapper
 {
 public:
   static vtkDSMPolyDataMapper* New();
-  vtkTypeMacro(vtkDSMPolyDataMapper, vtkPolyDataMapper);
+  vtkTypeMacro(vtkDSMPolyDataMapper, vtkDSMMeshDisplayMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -62,27 +63,6 @@ public:
    */
   void SetCompositeDataDisplayAttributes(vtkCompositeDataDisplayAttributes* attributes);
   vtkCompositeDataDisplayAttributes* GetCompositeDataDisplayAttributes() const;
-  ///@}
-
-  ///@{
-  /**
-   * Radius, in the units of the points, of the tubes that lines are drawn as, and of the spheres that
-   * vertices are drawn as. 0 (the default) is a three-hundredth of the diagonal of all ranks' data;
-   * less than 0 leaves them out.
-   */
-  vtkSetMacro(LineRadius, double);
-  vtkGetMacro(LineRadius, double);
-  vtkSetMacro(PointRadius, double);
-  vtkGetMacro(PointRadius, double);
-  ///@}
-
-  ///@{
-  /**
-   * A point array of one component that both radii are multiplied by; empty (the default): none.
-   * Where it is negative or not a number nothing is drawn.
-   */
-  vtkSetMacro(RadiusArray, std::string);
-  vtkGetMacro(RadiusArray, std::string);
   ///@}
 
   ///@{
@@ -163,9 +143,6 @@ private:
   void operator=(const vtkDSMPolyDataMapper&) = delete;
 
   vtkSmartPointer<vtkCompositeDataDisplayAttributes> BlockAttributes;
-  double LineRadius = 0.0;
-  double PointRadius = 0.0;
-  std::string RadiusArray;
   bool MakesScene = true;
   vtkSmartPointer<vtkDSMLightOptions> LightOptions;
   vtkSmartPointer<vtkDSMMemoryOptions> MemoryOptions;

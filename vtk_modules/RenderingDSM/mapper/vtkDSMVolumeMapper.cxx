@@ -438,7 +438,6 @@ void vtkDSMVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << value;
   }
   os << "\n";
-  os << indent << "ValidRange: " << this->ValidRange[0] << " " << this->ValidRange[1] << "\n";
   os << indent << "SuggestedIsoValue: " << this->SuggestedIsoValue << "\n";
   os << indent << "SuggestedRange: " << this->SuggestedRange[0] << " " << this->SuggestedRange[1]
      << "\n";

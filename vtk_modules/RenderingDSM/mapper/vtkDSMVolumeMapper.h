@@ -29,6 +29,8 @@
  * vtkVolumeMapper's cropping is honored; its planes are in the data's coordinates, without the volume's
  * transform. So are the mapper's clipping planes, which are in world coordinates.
  *
+ * vtkDSMVolumeDisplayMapper has the settings that ParaView's displays have as properties.
+ *
  * The mapper draws nothing itself: the renderer's vtkDSMScene traces all of its volumes together
  * when the renderer starts to render, on all ranks at once. Every rank must have the same volumes, in
  * the same order, with the same settings; only the input differs.
@@ -37,10 +39,10 @@
 #ifndef vtkDSMVolumeMapper_h
 #define vtkDSMVolumeMapper_h
 
+#include "vtkDSMVolumeDisplayMapper.h"
 #include "vtkDSMVolumeSettings.h"  // for the base class
 #include "vtkMath.h"               // for ivars
 #include "vtkRenderingDSMModule.h" // for the export macro
-#include "vtkVolumeMapper.h"
 
 #include <array>  // for SetSuggestedRange
 #include <memory> // for ivars
@@ -50,12 +52,12 @@ class vtkDSMOriginalData;
 class vtkPlane;
 
 class VTKRENDERINGDSM_EXPORT vtkDSMVolumeMapper
-  : public vtkVolumeMapper
+  : public vtkDSMVolumeDisplayMapper
   , private vtkDSMVolumeSettings
 {
 public:
   static vtkDSMVolumeMapper* New();
-  vtkTypeMacro(vtkDSMVolumeMapper, vtkVolumeMapper);
+  vtkTypeMacro(vtkDSMVolumeMapper, vtkDSMVolumeDisplayMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -101,24 +103,6 @@ public:
    */
   vtkSetMacro(IsoComponent, int);
   vtkGetMacro(IsoComponent, int);
-  ///@}
-
-  ///@{
-  /**
-   * If true, values of the array outside of ValidRange are missing, as NaN is: cells with such a corner, or of such
-   * a value, have no surface, medium, or slice, and do not count for the automatic isovalue. Off by default.
-   */
-  vtkSetMacro(IgnoreValues, bool);
-  vtkGetMacro(IgnoreValues, bool);
-  vtkBooleanMacro(IgnoreValues, bool);
-  ///@}
-
-  ///@{
-  /**
-   * The lowest and the highest value that is not missing. All finite values by default.
-   */
-  vtkSetVector2Macro(ValidRange, double);
-  vtkGetVector2Macro(ValidRange, double);
   ///@}
 
   ///@{
@@ -233,60 +217,11 @@ public:
 
   ///@{
   /**
-   * If true, slices are lit. Off by default: they show the colors of the lookup table as they are.
-   */
-  vtkSetMacro(SliceLighting, bool);
-  vtkGetMacro(SliceLighting, bool);
-  vtkBooleanMacro(SliceLighting, bool);
-  ///@}
-
-  ///@{
-  /**
-   * If true (the default), a place of a slice has the color of the value interpolated there, else that of the
-   * nearest sample. Values of cells are never interpolated.
-   */
-  vtkSetMacro(InterpolateSlices, bool);
-  vtkGetMacro(InterpolateSlices, bool);
-  vtkBooleanMacro(InterpolateSlices, bool);
-  ///@}
-
-  ///@{
-  /**
    * The opacity of slices by the values that color them, times that of the surface property. Null (the default): that
    * of the lookup table.
    */
   void SetSliceOpacity(vtkPiecewiseFunction* function);
   vtkPiecewiseFunction* GetSliceOpacity() const;
-  ///@}
-
-  ///@{
-  /**
-   * If true, the mapper shows the faces that its clipping planes cut. Off by default. Faces of isosurfaces look as
-   * slices do; faces of the medium have its colors, unlit, and the opacities of its opacity function, unless
-   * CapOpacity is off. vtkVolumeMapper's cropping regions have no such faces.
-   */
-  vtkSetMacro(Capping, bool);
-  vtkGetMacro(Capping, bool);
-  vtkBooleanMacro(Capping, bool);
-  vtkSetMacro(CapOpacity, bool);
-  vtkGetMacro(CapOpacity, bool);
-  vtkBooleanMacro(CapOpacity, bool);
-  ///@}
-
-  ///@{
-  /**
-   * The visible part of the faces that are cut out of isosurfaces: where values are not below the lowest isovalue
-   * (ValuesAbove, the default), where they are not above the highest one (ValuesBelow), or all of them. All of the
-   * medium's faces are shown.
-   */
-  enum CapSides
-  {
-    ValuesAbove,
-    ValuesBelow,
-    WholeFace
-  };
-  vtkSetClampMacro(CapSide, int, ValuesAbove, WholeFace);
-  vtkGetMacro(CapSide, int);
   ///@}
 
   ///@{

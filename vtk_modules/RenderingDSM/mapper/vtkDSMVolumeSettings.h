@@ -23,7 +23,6 @@ class vtkScalarsToColors;
   X(IsoArray, std::string, "")                                                                     \
   X(IsoArrayOnCells, bool, false)                                                                  \
   X(IsoComponent, int, 0)                                                                          \
-  X(IgnoreValues, bool, false)                                                                     \
   X(AutomaticIsoValue, bool, false)                                                                \
   X(SurfacesOnly, bool, false)                                                                     \
   X(Scattering, double, 0.0)                                                                       \
@@ -32,12 +31,7 @@ class vtkScalarsToColors;
   X(OpacityComponent, int, 0)                                                                      \
   X(Slicing, bool, false)                                                                          \
   X(SlicePlanes, vtkSmartPointer<vtkPlaneCollection>, {})                                          \
-  X(SliceLighting, bool, false)                                                                    \
-  X(InterpolateSlices, bool, true)                                                                 \
   X(SliceOpacity, vtkSmartPointer<vtkPiecewiseFunction>, {})                                       \
-  X(Capping, bool, false)                                                                          \
-  X(CapOpacity, bool, true)                                                                        \
-  X(CapSide, int, 0)                                                                               \
   X(ColorArray, std::string, "")                                                                   \
   X(ColorArrayOnCells, bool, false)                                                                \
   X(MapScalars, bool, true)                                                                        \
@@ -69,14 +63,14 @@ class vtkScalarsToColors;
   X(ResamplerUpdateTolerance, double, 1e-7)                                                        \
   X(UseDefaultThreading, bool, false)
 
-/// All that a user sets of a vtkDSMVolumeMapper, beside what its base classes have.
+/// All that a user sets of a vtkDSMVolumeMapper, beside what its base classes have. Settings that displays have as
+/// properties are in mapper/properties.cmake.
 struct vtkDSMVolumeSettings
 {
 #define vtkDSMDeclare(name, type, value) type name = value;
   VTK_DSM_VOLUME_SETTINGS(vtkDSMDeclare)
 #undef vtkDSMDeclare
   std::vector<double> IsoValues;
-  double ValidRange[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MAX };
   std::vector<std::pair<int, int>> Slices; ///< axis, index; ascending
   vtkDSMBlockLooks BlockLooks;
   int NumberOfSamples[3] = { 128, 128, 128 }; ///< of vtkAMRVolumeMapper; kept without effect

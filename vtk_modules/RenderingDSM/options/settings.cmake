@@ -4,18 +4,18 @@
 # first table of docs/properties.md. cmake/DSMSettings.cmake says what each word means.
 
 dsm_setting(Shadows OWNER scene TYPE bool DEFAULT 0
-  LABEL "Shadows" PANEL first NEEDS light
+  LABEL "Shadows" PANEL first ENABLED light
   TEXT "Surfaces cast shadows, also on other datasets and from other ranks' data. Costs about one ray per light.")
 dsm_setting(LightRadius OWNER scene TYPE double DEFAULT 0 RANGE 0 10 SLIDER 0 1
-  LABEL "Light Radius" PANEL advanced NEEDS light
+  LABEL "Light Radius" PANEL advanced ENABLED light
   TEXT "Apparent radius of every light: the tangent of half the angle that the light fills. 0 gives hard shadows, 0.05
     soft ones. Soft shadows need several samples per pixel.")
 dsm_setting(AmbientOcclusionSamples OWNER scene TYPE int DEFAULT 0 RANGE 0 1024 SLIDER 0 64
-  LABEL "Ambient Occlusion Samples" PANEL first NEEDS light
+  LABEL "Ambient Occlusion Samples" PANEL first ENABLED light
   TEXT "Number of ambient occlusion rays per sample. Darkens creases and cavities. 0 turns it off. With 16 samples per
     pixel, 1 ray is enough. With 1 sample per pixel, few rays leave dark speckles.")
 dsm_setting(AmbientOcclusionDistance OWNER scene TYPE double DEFAULT 0 RANGE 0
-  LABEL "Ambient Occlusion Distance" PANEL advanced NEEDS light
+  LABEL "Ambient Occlusion Distance" PANEL advanced ENABLED light
   TEXT "Length of ambient occlusion rays, in world units. Shorter rays are faster and show finer detail. 0 uses a
     fifth of the diagonal of everything visible.")
 dsm_setting(Look OWNER scene TYPE enum DEFAULT 2 PAGE_DEFAULT 1 PAGE_ENTRIES 2
@@ -25,15 +25,15 @@ dsm_setting(Look OWNER scene TYPE enum DEFAULT 2 PAGE_DEFAULT 1 PAGE_ENTRIES 2
     Plain: the same look as Contour. Automatic: the look of the settings page in the application, and Plain in
     scripts. Shadows, ambient occlusion and environment light replace the first look.")
 dsm_setting(EnvironmentLight OWNER scene TYPE double DEFAULT 0 RANGE 0 100 SLIDER 0 2
-  LABEL "Environment Light" PANEL default NEEDS light
+  LABEL "Environment Light" PANEL default ENABLED light
   TEXT "Strength of the light that arrives from all directions, in the colors of the view's background. A gradient's
     lower color arrives from below (-y), its upper color from above. Ambient occlusion blocks this light. 0 turns it
     off.")
 dsm_setting(Reflectivity OWNER dataset TYPE double DEFAULT 0 RANGE 0 1 SLIDER 0 1
-  LABEL "Reflectivity" PANEL default NEEDS no_volume
+  LABEL "Reflectivity" PANEL default WHEN no_volume
   TEXT "Fraction of the light that this dataset's surfaces mirror.")
 dsm_setting(MaxBounces OWNER scene TYPE int DEFAULT 2 RANGE 0 64 SLIDER 0 64
-  LABEL "Maximum Bounces" PANEL advanced NEEDS no_volume
+  LABEL "Maximum Bounces" PANEL advanced WHEN no_volume
   TEXT "Maximum number of times that a ray is mirrored.")
 dsm_setting(SamplesPerPixel OWNER scene TYPE int DEFAULT 1 RANGE 1 65536 CHOICES "1 4 16 64 256 1024 4096"
   LABEL "Samples per Pixel" PANEL first
