@@ -10,15 +10,15 @@ namespace
 
 void AddLights(Scenes& scenes)
 {
-  const auto place = [](SceneStage& stage, rt::Light::Kind kind) -> rt::Light&
+  const rt::PositionalLight lamp{ { 1.2, 2.2, 1.9 }, { 1.0f, 0.0f, 0.0f } };
+  const rt::PositionalLight attenuated{ lamp.Position, { 0.2f, 0.1f, 0.2f } };
+  const auto place = [](SceneStage& stage, const rt::LightKind& kind) -> rt::Light&
   {
     rt::Light& light = stage.AddLight({ -0.3, -1.0, -0.6 });
-    light.Type = kind;
-    light.Position = { 1.2, 2.2, 1.9 };
-    light.ConeCosine = 0.85f;
-    light.Exponent = 3.0f;
+    light.Kind = kind;
     return light;
   };
+  const rt::ConeLight cone{ lamp, 0.85f, 3.0f };
   const Named<std::function<void(SceneStage&)>> lights = {
     { "None", [](SceneStage& stage) { stage.World.Lights.clear(); } },
     { "Headlight",
@@ -27,16 +27,13 @@ void AddLights(Scenes& scenes)
         stage.World.Lights.clear();
         stage.AddLight({ -2.2, -1.6, -3.0 }).IsLoneHeadlight = true;
       } },
-    { "Positional", [place](SceneStage& stage) { place(stage, rt::Light::Kind::Positional); } },
-    { "Attenuated",
-      [place](SceneStage& stage) {
-        place(stage, rt::Light::Kind::Positional).Attenuation = { 0.2f, 0.1f, 0.2f };
-      } },
-    { "Cone", [place](SceneStage& stage) { place(stage, rt::Light::Kind::Cone); } },
+    { "Positional", [=](SceneStage& stage) { place(stage, lamp); } },
+    { "Attenuated", [=](SceneStage& stage) { place(stage, attenuated); } },
+    { "Cone", [=](SceneStage& stage) { place(stage, cone); } },
     { "Three",
-      [place](SceneStage& stage)
+      [=](SceneStage& stage)
       {
-        place(stage, rt::Light::Kind::Cone).Color = { 0.9f, 0.2f, 0.2f };
+        place(stage, cone).Color = { 0.9f, 0.2f, 0.2f };
         stage.AddLight({ 1.0, -0.4, -0.2 }).Color = { 0.1f, 0.3f, 0.9f };
       } }
   };

@@ -56,7 +56,14 @@ TEST(TestSceneDigest, ChangesWithAllThatThePictureShows)
         [](rt::Scene& s, rt::FrameRequest&) { GetIsosurface(s).Clipping.Boxes.emplace(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back(); },
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back().Color.y = 2; },
-        [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back().Position.x = 2; },
+        [](rt::Scene& s, rt::FrameRequest&)
+        { s.Lights.emplace_back().Kind = rt::PositionalLight{}; },
+        [](rt::Scene& s, rt::FrameRequest&) {
+          s.Lights.emplace_back().Kind = rt::PositionalLight{ { 2.0, 0.0, 0.0 }, {} };
+        },
+        [](rt::Scene& s, rt::FrameRequest&) {
+          s.Lights.emplace_back().Kind = rt::ConeLight{ {}, 0.5f, 1.0f };
+        },
         [](rt::Scene& s, rt::FrameRequest&) { s.Lights.emplace_back().Direction.z = 2; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Shadows = true; },
         [](rt::Scene& s, rt::FrameRequest&) { s.Transport.Background.z = 0.3f; },

@@ -197,8 +197,7 @@ TEST_F(TestTileSampler, LightRaysEqualSinglePixels)
   scene.Lights.emplace_back();
   scene.Lights.back().Direction = glm::normalize(glm::dvec3(-0.4, -1.0, -0.3));
   scene.Lights.emplace_back();
-  scene.Lights.back().Type = rt::Light::Kind::Positional;
-  scene.Lights.back().Position = { 1.5, 1.0, 0.2 };
+  scene.Lights.back().Kind = rt::PositionalLight{ { 1.5, 1.0, 0.2 }, { 1.0f, 0.0f, 0.0f } };
   scene.Transport.Shadows = true;
   isosurface.Look.Surface.Reflectivity = 0.3f;
   for (int variant = 0; variant < 5; ++variant)

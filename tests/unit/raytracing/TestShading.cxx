@@ -53,8 +53,9 @@ glm::vec3 ShadePoint(const std::vector<rt::Light>& lights, const rt::Material& m
   point.ToViewer = ToViewer;
   point.Color = color;
   point.ColorIsFromArray = fromArray;
+  rt::SampleSequence random;
   return rt::Shade(lights, material, point,
-    [](const rt::Light&, const rt::Incidence&) { return glm::dvec3(1.0); });
+    [&](std::size_t light) { return lights[light].Sample(Point, random); });
 }
 
 glm::vec3 ShadeWith(const rt::Light& light, const glm::dvec3& normal = Up)
@@ -117,9 +118,7 @@ TEST(TestShading, LightFromBehindLeavesTheAmbient)
 TEST(TestShading, PositionalLightIsAttenuated)
 {
   rt::Light light = CreateLight();
-  light.Type = rt::Light::Kind::Positional;
-  light.Position = Point + glm::dvec3(-3.0, 0.0, 4.0);
-  light.Attenuation = { 0.5f, 0.1f, 0.02f };
+  light.Kind = rt::PositionalLight{ Point + glm::dvec3(-3.0, 0.0, 4.0), { 0.5f, 0.1f, 0.02f } };
   ExpectNear(ShadeWith(light),
     GetExpected(glm::normalize(glm::dvec3(3.0, 0.0, -4.0)), 1.0 / (0.5 + 0.1 * 5 + 0.02 * 25)));
 }
@@ -127,16 +126,18 @@ TEST(TestShading, PositionalLightIsAttenuated)
 TEST(TestShading, ConeFallsOffAndEnds)
 {
   rt::Light light = CreateLight();
-  light.Type = rt::Light::Kind::Cone;
-  light.Position = Point + glm::dvec3(-3.0, 0.0, 4.0);
+  rt::ConeLight cone;
+  cone.Lamp.Position = Point + glm::dvec3(-3.0, 0.0, 4.0);
+  cone.Exponent = 3.0f;
+  cone.Cosine = std::cos(0.5f);
+  light.Kind = cone;
   light.Direction = glm::normalize(glm::dvec3(0.5, 0.0, -1.0));
-  light.Exponent = 3.0f;
-  light.ConeCosine = std::cos(0.5f);
   const glm::dvec3 direction = glm::normalize(glm::dvec3(3.0, 0.0, -4.0));
   const double cosine = glm::dot(direction, light.Direction);
-  ASSERT_GT(cosine, light.ConeCosine);
+  ASSERT_GT(cosine, cone.Cosine);
   ExpectNear(ShadeWith(light), GetExpected(direction, std::pow(cosine, 3.0)));
-  light.ConeCosine = static_cast<float>(cosine) + 1e-3f;
+  cone.Cosine = static_cast<float>(cosine) + 1e-3f;
+  light.Kind = cone;
   ExpectNear(ShadeWith(light), GetExpected(direction, 0.0));
 }
 
@@ -186,10 +187,12 @@ TEST(TestShading, HiddenLightLeavesTheAmbient)
   const auto shade = [&](const glm::dvec3& part)
   {
     return rt::Shade({ CreateLight() }, material, point,
-      [&](const rt::Light&, const rt::Incidence& incidence)
+      [&](std::size_t)
       {
-        EXPECT_EQ(incidence.Direction, CreateLight().Direction);
-        return part;
+        rt::SampleSequence random;
+        rt::LightSample light = CreateLight().Sample(Point, random);
+        light.Radiance *= part;
+        return light;
       });
   };
   const glm::dvec3 ambient(0.1, 0.05, 0.0);

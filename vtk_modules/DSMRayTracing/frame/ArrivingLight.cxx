@@ -33,13 +33,23 @@ float GetBrightness(const Light& light)
 }
 
 /// How much a light that arrives adds to the color of a surface at most.
-double GetBrightest(
-  const Light& light, const Incidence& incidence, const LightPath& path, const ShadingPoint& point)
+double GetBrightest(const LightSample& light, const LightPath& path, const ShadingPoint& point)
 {
   const Material& surface = *path.Point.Surface;
-  const double cosine = -glm::dot(point.Normal, incidence.Direction);
+  const double cosine = -glm::dot(point.Normal, light.Direction);
   const double part = surface.Diffuse * cosine + surface.Specular;
-  return part * incidence.Attenuation * std::max({ light.Color.x, light.Color.y, light.Color.z });
+  return part * std::max({ light.Radiance.x, light.Radiance.y, light.Radiance.z });
+}
+
+/// Visibility in a faint shadow. At grazing angles, the surface's coarse shape would cast shadows onto its smooth
+/// shading.
+glm::dvec3 GetFaint(
+  const glm::dvec3& visibility, const LightSample& light, const glm::dvec3& normal)
+{
+  const double cosine = -glm::dot(light.Direction, normal);
+  const double taken = (1.0 - LeftInFaintShadow) *
+    std::clamp((cosine - GrazingCosine) / (FullCosine - GrazingCosine), 0.0, 1.0);
+  return 1.0 - taken * (1.0 - visibility);
 }
 
 } // namespace
@@ -66,38 +76,41 @@ std::vector<ShadingPoint> ArrivingLight::FindPoints(LightPath* const* paths, int
   return points;
 }
 
-std::vector<glm::dvec3> ArrivingLight::FindVisibility(
+std::vector<LightSample> ArrivingLight::FindArriving(
   LightPath* const* paths, int count, const ShadingPoint* points) const
 {
-  std::vector<glm::dvec3> visibility;
   const std::vector<Light>& lights = this->World.Lights;
-  if (this->World.Transport.Shadows)
+  const bool shadows = this->World.Transport.Shadows;
+  if (!shadows && !this->World.Transport.FaintShadows)
   {
-    visibility.resize(MaxRays * lights.size());
-    for (std::size_t light = 0; light < lights.size(); ++light)
-    {
-      this->FindVisibility(
-        lights[light], paths, count, points, visibility.data() + MaxRays * light);
-    }
+    return {};
   }
-  else if (this->World.Transport.FaintShadows && !lights.empty())
+  const auto brightest = static_cast<std::size_t>(
+    std::max_element(lights.begin(), lights.end(),
+      [](const Light& a, const Light& b) { return GetBrightness(a) < GetBrightness(b); }) -
+    lights.begin());
+  std::vector<LightSample> arriving(MaxRays * lights.size());
+  for (std::size_t lamp = 0; lamp < lights.size(); ++lamp)
   {
-    const auto brightest = std::max_element(lights.begin(), lights.end(),
-      [](const Light& a, const Light& b) { return GetBrightness(a) < GetBrightness(b); });
-    visibility.assign(MaxRays * lights.size(), glm::dvec3(1.0));
-    glm::dvec3* const first = visibility.data() + MaxRays * (brightest - lights.begin());
-    this->FindVisibility(*brightest, paths, count, points, first);
+    LightSample* const samples = arriving.data() + MaxRays * lamp;
     for (int number = 0; number < count; ++number)
     {
-      // At grazing angles, the surface's coarse shape would cast shadows onto its smooth shading.
-      const Incidence incidence = GetIncidence(*brightest, points[number].Position);
-      const double cosine = -glm::dot(incidence.Direction, points[number].Normal);
-      const double taken = (1.0 - LeftInFaintShadow) *
-        std::clamp((cosine - GrazingCosine) / (FullCosine - GrazingCosine), 0.0, 1.0);
-      first[number] = 1.0 - taken * (1.0 - first[number]);
+      samples[number] = lights[lamp].Sample(points[number].Position, paths[number]->Random);
+    }
+    if (!shadows && lamp != brightest)
+    {
+      continue;
+    }
+    glm::dvec3 visibility[MaxRays] = {};
+    this->FindVisibility(lamp, paths, count, points, samples, visibility);
+    for (int number = 0; number < count; ++number)
+    {
+      samples[number].Radiance *= shadows
+        ? visibility[number]
+        : GetFaint(visibility[number], samples[number], points[number].Normal);
     }
   }
-  return visibility;
+  return arriving;
 }
 
 void ArrivingLight::ShareAmbient(std::vector<ShadingPoint>& points) const
@@ -157,10 +170,9 @@ ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
   return shading;
 }
 
-void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, int count,
-  const ShadingPoint* points, glm::dvec3* visibility) const
+void ArrivingLight::FindVisibility(std::size_t lamp, LightPath* const* paths, int count,
+  const ShadingPoint* points, const LightSample* samples, glm::dvec3* visibility) const
 {
-  const std::ptrdiff_t lamp = &light - this->World.Lights.data();
   const bool isKept = lamp < LightPath::MaxKnownLamps;
   Ray rays[MaxRays];
   int numbers[MaxRays];
@@ -168,19 +180,18 @@ void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, 
   for (int number = 0; number < count; ++number)
   {
     LightPath& path = *paths[number];
-    const Incidence incidence = GetIncidence(light, points[number].Position);
-    if (!path.Point.Surface->Lighting || !Arrives(incidence, points[number]))
+    const LightSample& light = samples[number];
+    if (!path.Point.Surface->Lighting || !Arrives(light, points[number]))
     {
       continue;
     }
     if (isKept && (path.KnownLamps >> lamp & 1u) != 0 &&
-      path.Lamps[lamp].Lend(
-        path.GetWeight() * GetBrightest(light, incidence, path, points[number])))
+      path.Lamps[lamp].Lend(path.GetWeight() * GetBrightest(light, path, points[number])))
     {
       visibility[number] = path.Lamps[lamp].Get();
       continue;
     }
-    rays[rayCount] = this->GetLightRay(incidence, path);
+    rays[rayCount] = this->GetLightRay(light, path);
     numbers[rayCount++] = number;
   }
   glm::dvec3 transmittances[MaxRays];
@@ -197,13 +208,13 @@ void ArrivingLight::FindVisibility(const Light& light, LightPath* const* paths, 
   }
 }
 
-Ray ArrivingLight::GetLightRay(const Incidence& incidence, LightPath& path) const
+Ray ArrivingLight::GetLightRay(const LightSample& light, LightPath& path) const
 {
   Ray ray;
   ray.Origin = path.Point.Position;
-  ray.Direction = AimAt(incidence, this->World.Transport.LightRadius, path.Random);
+  ray.Direction = light.Aim(this->World.Transport.LightRadius, path.Random);
   ray.Min = path.Point.Clearance;
-  ray.Max = incidence.Distance;
+  ray.Max = light.Distance;
   ++path.LightRays;
   return ray;
 }

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace rt
@@ -25,9 +26,9 @@ public:
   /// The points that paths are at, at most MaxRays, with the light from all around.
   std::vector<ShadingPoint> FindPoints(LightPath* const* paths, int count) const;
 
-  /// For lamp after lamp, MaxRays apart, how much of it arrives at each of the points that face it. Empty:
+  /// For lamp after lamp, MaxRays apart, its light that arrives at each of the points, where there are shadows. Empty:
   /// all of it.
-  std::vector<glm::dvec3> FindVisibility(
+  std::vector<LightSample> FindArriving(
     LightPath* const* paths, int count, const ShadingPoint* points) const;
 
   /// For previews: gives each of at most MaxRays points that lie close together in the picture the mean ambient
@@ -37,9 +38,9 @@ public:
 private:
   ShadingPoint GetPoint(const LightPath& path) const;
   void LookAround(LightPath* const* paths, int count, ShadingPoint* points) const;
-  void FindVisibility(const Light& light, LightPath* const* paths, int count,
-    const ShadingPoint* points, glm::dvec3* visibility) const;
-  Ray GetLightRay(const Incidence& incidence, LightPath& path) const;
+  void FindVisibility(std::size_t lamp, LightPath* const* paths, int count,
+    const ShadingPoint* points, const LightSample* samples, glm::dvec3* visibility) const;
+  Ray GetLightRay(const LightSample& light, LightPath& path) const;
   Ray GetOcclusionRay(const glm::dvec3& normal, LightPath& path) const;
 
   TransmittanceFinder Transmittances;

@@ -81,8 +81,7 @@ void MediumLighting::Shine(
             static_cast<std::size_t>(middle * static_cast<double>(count)), count - 1)];
         }
         before += piece.Share;
-        piece.Amount =
-          this->GetLit(piece, GetPosition(rays[ray], piece), paths[ray]->ToViewer, arriving);
+        piece.Amount = this->GetLit(piece, GetPosition(rays[ray], piece), *paths[ray], arriving);
       }
     });
 }
@@ -204,19 +203,20 @@ void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
       number, rays, wanted, paths, places,
       [&](Ray& ray, LightPath& path, const glm::dvec3&)
       {
-        const Incidence incidence = GetIncidence(lamp, ray.Origin);
-        ray.Direction = AimAt(incidence, radius, path.Random);
-        ray.Max = incidence.Distance;
+        const LightSample light = lamp.Sample(ray.Origin, path.Random);
+        ray.Direction = light.Aim(radius, path.Random);
+        ray.Max = light.Distance;
       },
       [](Place& place, const glm::dvec3& transmittance) { place.Lamps.push_back(transmittance); });
   }
 }
 
 /// As VTK's ray cast mappers shade (vtkVolumeShaderComposer).
-Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& position,
-  const glm::dvec3& toViewer, const Place* arriving) const
+Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& position, LightPath& path,
+  const Place* arriving) const
 {
   const MediumLook& look = *piece.Look;
+  const glm::dvec3& toViewer = path.ToViewer;
   const Material& surface = look.Surface;
   const glm::dvec3 color(piece.Amount[0], piece.Amount[1], piece.Amount[2]);
   const double ambient = arriving ? arriving->Ambient : 1.0;
@@ -234,25 +234,25 @@ Lanes MediumLighting::GetLit(const MediumPiece& piece, const glm::dvec3& positio
   for (std::size_t number = 0; number < this->World.Lights.size(); ++number)
   {
     const Light& lamp = this->World.Lights[number];
-    const Incidence incidence = GetIncidence(lamp, position);
+    const LightSample sample = lamp.Sample(position, path.Random);
     if (look.Shade)
     {
       lit += surfacePart * ambient * surface.Ambient *
         (lamp.IsLoneHeadlight ? color : piece.Amount[3] * glm::dvec3(lamp.AmbientColor));
     }
-    glm::dvec3 light = incidence.Attenuation * glm::dvec3(lamp.Color);
+    glm::dvec3 light = sample.Radiance;
     if (arriving && !arriving->Lamps.empty())
     {
       light *= arriving->Lamps[number];
     }
     lit += look.Scattering * ambient *
-      GetPhase(look.Anisotropy, glm::dot(incidence.Direction, toViewer)) * light * color;
-    const double along = -glm::dot(piece.Normal, incidence.Direction);
+      GetPhase(look.Anisotropy, glm::dot(sample.Direction, toViewer)) * light * color;
+    const double along = -glm::dot(piece.Normal, sample.Direction);
     const double cosine = this->World.Transport.TwoSided ? std::abs(along) : along;
     if (look.Shade && cosine > 0.0)
     {
       lit += surfacePart * ambient * surface.Diffuse * cosine * light * color;
-      const double highlight = glm::dot(glm::reflect(incidence.Direction, piece.Normal), toViewer);
+      const double highlight = glm::dot(glm::reflect(sample.Direction, piece.Normal), toViewer);
       if (surface.Specular > 0.0f && highlight > 0.0)
       {
         lit += surfacePart * surface.Specular * std::pow(highlight, surface.SpecularPower) *

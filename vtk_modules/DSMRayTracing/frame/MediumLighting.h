@@ -60,7 +60,7 @@ private:
     std::vector<Places>& places) const;
 
   /// The amounts of a piece, as they are seen from there.
-  Lanes GetLit(const MediumPiece& piece, const glm::dvec3& position, const glm::dvec3& toViewer,
+  Lanes GetLit(const MediumPiece& piece, const glm::dvec3& position, LightPath& path,
     const Place* arriving) const;
 
   TransmittanceFinder Transmittances;

@@ -313,16 +313,17 @@ void PixelSampler::Shade(
     return;
   }
   std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
-  const std::vector<glm::dvec3> visibility =
-    this->Lighting.FindVisibility(paths, count, points.data());
+  const std::vector<LightSample> arriving =
+    this->Lighting.FindArriving(paths, count, points.data());
   const std::vector<Light>& lights = this->World.Lights;
   const auto shade = [&](int number)
   {
     return rt::Shade(lights, *paths[number]->Point.Surface, points[number],
-      [&](const Light& light, const Incidence&)
+      [&](std::size_t lamp)
       {
-        return visibility.empty() ? glm::dvec3(1.0)
-                                  : visibility[MaxRays * (&light - lights.data()) + number];
+        return arriving.empty()
+          ? lights[lamp].Sample(points[number].Position, paths[number]->Random)
+          : arriving[MaxRays * lamp + number];
       });
   };
   for (int number = 0; number < count; ++number)

@@ -13,10 +13,9 @@ namespace
 
 void Add(ObjectDigest& digest, const Light& light)
 {
-  const auto& [type, isLoneHeadlight, position, direction, color, ambientColor, coneCosine,
-    exponent, attenuation] = light;
-  digest.AddAll(type, isLoneHeadlight, position, direction, color, ambientColor, coneCosine,
-    exponent, attenuation);
+  const auto& [kind, isLoneHeadlight, direction, color, ambientColor] = light;
+  digest.AddAll(kind.index(), isLoneHeadlight, direction, color, ambientColor);
+  std::visit([&](const auto& known) { known.AddTo(digest); }, kind);
 }
 
 void Add(ObjectDigest& digest, const LightTransport& transport)

@@ -3,34 +3,20 @@
 #define rt_Shading_h
 
 #include "DSMRayTracing/light/Light.h"
-#include "DSMRayTracing/light/SampleSequence.h"
 #include "DSMRayTracing/look/Material.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace rt
 {
-
-/// Light that arrives at a point if nothing is in between.
-struct Incidence
-{
-  glm::dvec3 Direction{ 0.0 }; ///< unit, from the light to the point
-  double Distance = 0.0;       ///< to the light; infinite for a directional one
-  double Attenuation = 0.0;
-};
-
-/// World space.
-Incidence GetIncidence(const Light& light, const glm::dvec3& point);
-
-/// Returns a unit direction from the point to the light or, where lights have a radius
-/// (LightTransport::LightRadius), to a random place on it.
-glm::dvec3 AimAt(const Incidence& incidence, double lightRadius, SampleSequence& random);
 
 /// A point of a surface, and from where it is looked at. World space; vectors are unit.
 struct ShadingPoint
@@ -57,22 +43,23 @@ struct ShadingPoint
 };
 
 /// Returns whether light from there makes the surface brighter, unless something is in between.
-inline bool Arrives(const Incidence& incidence, const ShadingPoint& point)
+inline bool Arrives(const LightSample& light, const ShadingPoint& point)
 {
-  return -glm::dot(point.Normal, incidence.Direction) > 0.0 && incidence.Attenuation > 0.0;
+  return -glm::dot(point.Normal, light.Direction) > 0.0 &&
+    glm::any(glm::greaterThan(light.Radiance, glm::dvec3(0.0)));
 }
 
 /// The color, in [0, 1], that a surface sends to the viewer; the formula of VTK's OpenGL polydata
 /// mapper (Phong, for any number of lights):
 ///
-///   ambient + sum over lights of attenuation * light * (diffuse * N.L + specular * (R.V)^power)
+///   ambient + sum over lights of radiance * (diffuse * N.L + specular * (R.V)^power)
 ///
 /// with (N.L)^power for a lone headlight, as there, and diffuse times the light from all around. Without
-/// lighting, or without any light, the surface shows ambient + diffuse. `visibility(light, incidence)`
-/// is called for lights that face the surface: the part of each color that arrives (glm::dvec3).
-template <class Visibility>
+/// lighting, or without any light, the surface shows ambient + diffuse. `arriving(number)` returns the
+/// light of a lamp that arrives, as a LightSample.
+template <class Arriving>
 glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
-  const ShadingPoint& point, Visibility&& visibility)
+  const ShadingPoint& point, Arriving&& arriving)
 {
   const glm::vec3 ambientColor = point.ColorIsFromArray ? point.Color : surface.AmbientColor;
   const double uncovered = 1.0 - point.LineCover;
@@ -87,23 +74,21 @@ glm::vec3 Shade(const std::vector<Light>& lights, const Material& surface,
   }
   color += uncovered * glm::dvec3(surface.Diffuse * point.Color) * point.Surroundings;
   const glm::dvec3 specularColor = surface.Specular * surface.SpecularColor;
-  for (const Light& light : lights)
+  for (std::size_t number = 0; number < lights.size(); ++number)
   {
-    const Incidence incidence = GetIncidence(light, point.Position);
-    if (!Arrives(incidence, point))
+    const LightSample light = arriving(number);
+    if (!Arrives(light, point))
     {
       continue;
     }
-    const double cosine = -glm::dot(point.Normal, incidence.Direction);
-    const glm::dvec3 arriving =
-      incidence.Attenuation * glm::dvec3(light.Color) * visibility(light, incidence);
-    color += arriving * diffuseColor * cosine;
+    const double cosine = -glm::dot(point.Normal, light.Direction);
+    color += light.Radiance * diffuseColor * cosine;
     if (surface.Specular > 0.0f)
     {
-      const glm::dvec3 mirrored = glm::reflect(incidence.Direction, point.Normal);
+      const glm::dvec3 mirrored = glm::reflect(light.Direction, point.Normal);
       const double highlight =
-        light.IsLoneHeadlight ? cosine : std::max(0.0, glm::dot(mirrored, point.ToViewer));
-      color += arriving * specularColor * std::pow(highlight, surface.SpecularPower);
+        lights[number].IsLoneHeadlight ? cosine : std::max(0.0, glm::dot(mirrored, point.ToViewer));
+      color += light.Radiance * specularColor * std::pow(highlight, surface.SpecularPower);
     }
   }
   return glm::clamp(glm::vec3(color), 0.0f, 1.0f);

@@ -424,8 +424,8 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
     double to[3];
     source->GetTransformedPosition(from);
     source->GetTransformedFocalPoint(to);
-    light.Position = { from[0], from[1], from[2] };
-    const glm::dvec3 way = glm::dvec3(to[0], to[1], to[2]) - light.Position;
+    const glm::dvec3 position(from[0], from[1], from[2]);
+    const glm::dvec3 way = glm::dvec3(to[0], to[1], to[2]) - position;
     const double length = glm::length(way);
     light.Direction = length > 0.0 ? way / length : glm::dvec3(0.0, 0.0, -1.0);
     const auto intensity = static_cast<float>(source->GetIntensity());
@@ -433,12 +433,15 @@ std::vector<rt::Light> vtkDSMTranslation::ToLights(vtkRenderer* renderer)
     light.AmbientColor = ToColor(source->GetAmbientColor()) * intensity;
     if (source->GetPositional())
     {
-      light.Type =
-        source->GetConeAngle() < 90.0 ? rt::Light::Kind::Cone : rt::Light::Kind::Positional;
-      light.ConeCosine =
-        static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(source->GetConeAngle())));
-      light.Exponent = static_cast<float>(source->GetExponent());
-      light.Attenuation = ToColor(source->GetAttenuationValues());
+      const rt::PositionalLight lamp{ position, ToColor(source->GetAttenuationValues()) };
+      const double angle = source->GetConeAngle();
+      light.Kind = lamp;
+      if (angle < 90.0)
+      {
+        light.Kind =
+          rt::ConeLight{ lamp, static_cast<float>(std::cos(vtkMath::RadiansFromDegrees(angle))),
+            static_cast<float>(source->GetExponent()) };
+      }
     }
     light.IsLoneHeadlight = source->LightTypeIsHeadlight() && !source->GetPositional();
     lights.push_back(light);
