@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/GridWalk.h"
+#include "DSMRayTracing/field/grid/GridWalk.h"
 #include "RandomRays.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The walks over macrocells leave out nothing but what the predicate does not want, whatever it is.
 #include "DSMRayTracing/field/ValuePredicates.h"
+#include "DSMRayTracing/field/grid/BrickWalk.h"
 #include "DSMRayTracing/field/lattice/BeamDescent.h"
-#include "DSMRayTracing/field/lattice/BrickWalk.h"
 #include "RandomRays.h"
 
 #include <gtest/gtest.h>

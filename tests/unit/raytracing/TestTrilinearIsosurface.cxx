@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/TrilinearIsosurface.h"
+#include "DSMRayTracing/field/grid/TrilinearIsosurface.h"
 
 #include <gtest/gtest.h>
 

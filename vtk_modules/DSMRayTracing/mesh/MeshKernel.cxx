@@ -8,6 +8,7 @@
 
 #include "DSMRayTracing/mesh/MeshKernel.h"
 
+#include "DSMRayTracing/base/VectorKernel.h"
 #include "DSMRayTracing/mesh/MeshPacketSetup-inl.h"
 #include "DSMRayTracing/mesh/MeshPacketWalk-inl.h"
 
@@ -29,6 +30,12 @@ class MeshSteps
 public:
   using Mask = MeshPacket::Mask;
 
+  static MeshKernel Create(const char* name)
+  {
+    return { name, MeshPacketWalk<D>::Width, &SetRays, &FindBricks, &SearchBrick, &FindOccluded };
+  }
+
+private:
   static Mask SetRays(
     MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted, Mask& alone)
   {
@@ -60,7 +67,6 @@ public:
     return Search(packet, rays, brick, AnySearch(packet, brick));
   }
 
-private:
   /// Keeps the nearest hit of each ray.
   class NearestSearch
   {
@@ -197,22 +203,7 @@ private:
   };
 };
 
-template <class D>
-MeshKernel CreateMeshKernel(const char* name)
-{
-  return { name, MeshPacketWalk<D>::Width, &MeshSteps<D>::SetRays, &MeshSteps<D>::FindBricks,
-    &MeshSteps<D>::SearchBrick, &MeshSteps<D>::FindOccluded };
-}
-
-MeshKernel CreateWideMeshKernel()
-{
-  return CreateMeshKernel<hn::CappedTag<float, MeshPacket::Size>>(hwy::TargetName(HWY_TARGET));
-}
-
-MeshKernel CreateSingleMeshKernel()
-{
-  return CreateMeshKernel<hn::CappedTag<float, 1>>("one ray at a time");
-}
+RT_CREATE_KERNEL(MeshKernel, MeshSteps, float, MeshPacket::Size)
 
 } // namespace HWY_NAMESPACE
 } // namespace rt
@@ -222,25 +213,7 @@ HWY_AFTER_NAMESPACE();
 namespace rt
 {
 
-namespace
-{
-
-HWY_EXPORT(CreateWideMeshKernel);
-HWY_EXPORT(CreateSingleMeshKernel);
-
-} // namespace
-
-const MeshKernel& MeshKernel::GetBest()
-{
-  static const MeshKernel best = HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)();
-  return best;
-}
-
-std::vector<MeshKernel> MeshKernel::GetAll()
-{
-  return CreateForAllTargets<MeshKernel>({ HWY_DYNAMIC_DISPATCH(CreateSingleMeshKernel)() },
-    [] { return HWY_DYNAMIC_DISPATCH(CreateWideMeshKernel)(); });
-}
+RT_DISPATCH_KERNEL(MeshKernel)
 
 } // namespace rt
 #endif

@@ -9,9 +9,12 @@
 
 #include "DSMBricks/layout/VoxelBrickHeader.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
+#include "DSMRayTracing/field/cells/CellCrossing-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
 #include "DSMRayTracing/field/lattice/NodePlanes-inl.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
+#include "DSMRayTracing/field/lattice/VoxelCrossing-inl.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <hwy/highway.h>
@@ -28,68 +31,13 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Into [0, 1].
-template <class Vector>
-Vector ClampToUnit(Vector value)
-{
-  const hn::DFromV<Vector> tag;
-  const Vector zero = hn::Zero(tag);
-  const Vector one = hn::Set(tag, 1.0);
-  const Vector raised = hn::IfThenElse(hn::Gt(value, zero), value, zero);
-  return hn::IfThenElse(hn::Lt(raised, one), raised, one);
-}
-
-/// Behavior of a medium's transfer function in the macrocells that rays are in; see PacketPart.
-template <class D>
-struct MediumBehavior
-{
-  hn::Vec<D> Extinction;
-  hn::Vec<D> Change;
-  hn::Vec<D> Tinge;
-};
-
-/// Rays of a vector in the cells that they cross; the lanes that are not `There` mean nothing.
-template <class D>
-struct CrossedCells
-{
-  const std::size_t* Ray; ///< ray of each lane
-  std::uint32_t There;    ///< bits
-  /// Rays that go through their cell, and do not only touch it, where the cell holds data.
-  hn::Mask<D> Crossing;
-  hn::Vec<D> Corners[8]; ///< less what the brick subtracts
-  hn::Vec<D> Place[3];   ///< cell's position in the brick
-  hn::Vec<D> Enter;      ///< T at which the ray enters
-  hn::Vec<D> Exit;
-  hn::Vec<D> Start[3]; ///< within the cell, in [0, 1]
-  hn::Vec<D> End[3];
-  MediumBehavior<D> Behavior; ///< set for visitors that take macrocells
-  const PacketBrick* Brick;
-  const bool* Forward;
-};
-
-/// Rays of a vector in macrocells that they go through in one step; as CrossedCells.
-template <class D>
-struct PassedMacrocells
-{
-  const std::size_t* Ray;
-  std::uint32_t There;
-  hn::Vec<D>
-    Enter; ///< T at which the ray enters; not below Exit: the ray only touches the macrocell
-  hn::Vec<D> Exit;
-  hn::Vec<D> First; ///< values, less what the brick subtracts: where the ray enters
-  hn::Vec<D> Middle;
-  hn::Vec<D> Last;
-  MediumBehavior<D> Behavior;
-};
-
 /// The rays of a packet in a brick; what GridTraversal does for one ray, with the same bits. In a part
 /// of 4 x 4 x 4 macrocells it is found out at once, for each ray, which of them it crosses (see
 /// FindCrossedNodes). Then rays wait for their next macrocell, or the next cell in it, and those that
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
 ///
-/// `Visitor` says what is looked for: `Visit(const CrossedCells<D>&)` returns the lanes (bits) whose ray's search
-/// ends. If it `TakesMacrocells`, `Pass(const PassedMacrocells<D>&)` gets those that are smooth (PacketPart), and
-/// returns the same. `Planes`: UniformPlanes or StretchedPlanes.
+/// `Visitor` says what is looked for: it visits each VoxelCrossing. If it `NeedsBehavior`, it visits macrocells that
+/// are smooth (PacketPart) as a whole, each MacrocellCrossing. `Planes`: UniformPlanes or StretchedPlanes.
 template <class D, class Visitor, class Planes = UniformPlanes<D>>
 class BrickSearch
 {
@@ -291,7 +239,7 @@ private:
     }
     std::uint32_t passed = 0;
     std::uint32_t ended = 0;
-    if constexpr (Visitor::TakesMacrocells)
+    if constexpr (Visitor::NeedsBehavior)
     {
       for (int lane = 0; lane < batch.Count; ++lane)
       {
@@ -341,7 +289,7 @@ private:
     const Vector entry[3], const PacketPart& known)
   {
     const D tag;
-    PassedMacrocells<D> passed;
+    MacrocellCrossing<D> passed;
     passed.Ray = batch.Ray;
     passed.There = lanes;
     passed.Enter = Load(batch, this->Packet.BrickEnter);
@@ -411,20 +359,21 @@ private:
     passed.First = getValues(passed.Enter);
     passed.Middle = getValues(hn::Mul(hn::Set(tag, 0.5), hn::Add(passed.Enter, passed.Exit)));
     passed.Last = getValues(passed.Exit);
-    this->Describe(batch, known, passed);
-    return this->Look.Pass(passed);
+    // Rays that only touch the macrocell do not cross it.
+    passed.Crossing = hn::Lt(passed.Enter, passed.Exit);
+    passed.Behavior = this->GetBehavior(batch, known);
+    return this->Look.Visit(passed);
   }
 
-  /// Describes the macrocells that rays are in.
-  template <class Crossed>
-  HWY_INLINE void Describe(const Batch& batch, const PacketPart& known, Crossed& crossed) const
+  /// In the macrocells that rays are in.
+  HWY_INLINE MediumBehavior<D> GetBehavior(const Batch& batch, const PacketPart& known) const
   {
     std::size_t numbers[Width];
     for (int lane = 0; lane < Width; ++lane)
     {
       numbers[lane] = static_cast<std::size_t>(__builtin_ctzll(this->Macrocells[batch.Ray[lane]]));
     }
-    crossed.Behavior = { LoadLanes<double, Width>(known.Extinction, numbers),
+    return { LoadLanes<double, Width>(known.Extinction, numbers),
       LoadLanes<double, Width>(known.Change, numbers),
       LoadLanes<double, Width>(known.Tinge, numbers) };
   }
@@ -535,7 +484,7 @@ private:
       enter = hn::Max(enter, in[axis]);
       exit = hn::Min(exit, out[axis]);
     }
-    CrossedCells<D> cells;
+    VoxelCrossing<D> cells;
     cells.Ray = batch.Ray;
     cells.There = batch.GetLanes();
     cells.Enter = enter;
@@ -562,9 +511,9 @@ private:
       cells.Start[axis] = getLocal(enter, in[axis], entry);
       cells.End[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
     }
-    if constexpr (Visitor::TakesMacrocells)
+    if constexpr (Visitor::NeedsBehavior)
     {
-      this->Describe(batch, known, cells);
+      cells.Behavior = this->GetBehavior(batch, known);
     }
     const std::uint32_t ended = this->Look.Visit(cells) & batch.GetLanes();
     for (int lane = 0; lane < batch.Count; ++lane)

@@ -3,9 +3,9 @@
 #define rt_IsosurfaceSearch_txx
 
 #include "DSMBricks/layout/VoxelBrick.h"
-#include "DSMRayTracing/field/lattice/GridTraversal.h"
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/GridTraversal.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"

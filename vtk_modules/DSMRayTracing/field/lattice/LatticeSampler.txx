@@ -3,9 +3,9 @@
 #define rt_LatticeSampler_txx
 
 #include "DSMBricks/layout/VoxelBrick.h"
-#include "DSMRayTracing/field/lattice/HitGradient.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
-#include "DSMRayTracing/field/lattice/TrilinearCell.h"
+#include "DSMRayTracing/field/grid/HitGradient.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/TrilinearCell.h"
 #include "DSMRayTracing/look/PackedColor.h"
 
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMCore/base/Block.h"
 #include "DSMRayTracing/field/PlaneSections.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/LatticePlace.h"
 #include "DSMRayTracing/ray/Ray.h"
 

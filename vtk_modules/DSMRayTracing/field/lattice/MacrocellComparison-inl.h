@@ -26,7 +26,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// The functions of MacrocellComparison with vectors of at most `Lanes` samples.
 template <class T, std::size_t Lanes>
-class MacrocellSteps
+class MacrocellComparisonSteps
 {
 public:
   static constexpr MacrocellComparison<T> Create() { return { &FindCells, &FindMacrocells }; }
@@ -126,17 +126,6 @@ private:
     return found;
   }
 };
-
-template <std::size_t Lanes>
-MacrocellKernel CreateMacrocellKernel()
-{
-  return { { MacrocellSteps<std::int8_t, Lanes>::Create(),
-    MacrocellSteps<std::uint8_t, Lanes>::Create(), MacrocellSteps<std::int16_t, Lanes>::Create(),
-    MacrocellSteps<std::uint16_t, Lanes>::Create(), MacrocellSteps<std::int32_t, Lanes>::Create(),
-    MacrocellSteps<std::uint32_t, Lanes>::Create(), MacrocellSteps<std::int64_t, Lanes>::Create(),
-    MacrocellSteps<std::uint64_t, Lanes>::Create(), MacrocellSteps<float, Lanes>::Create(),
-    MacrocellSteps<double, Lanes>::Create() } };
-}
 
 } // namespace HWY_NAMESPACE
 } // namespace rt

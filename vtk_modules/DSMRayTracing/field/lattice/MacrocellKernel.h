@@ -3,6 +3,7 @@
 #define rt_MacrocellKernel_h
 
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/MacrocellSamples.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -33,9 +34,12 @@ struct MacrocellComparison
     const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first);
 };
 
-/// MacrocellComparison of all types.
+/// What is done with macrocells, for TypedPacketBrick; a part of PacketKernel. Pure; any thread.
 struct MacrocellKernel
 {
+  /// Returns the largest bend of the values along a line, for finite samples; see Roughness.
+  double (*FindRoughness)(const MacrocellSamples& samples);
+
   std::tuple<MacrocellComparison<std::int8_t>, MacrocellComparison<std::uint8_t>,
     MacrocellComparison<std::int16_t>, MacrocellComparison<std::uint16_t>,
     MacrocellComparison<std::int32_t>, MacrocellComparison<std::uint32_t>,

@@ -11,7 +11,6 @@
 
 #include <hwy/highway.h>
 
-#include <cstddef>
 #include <cstdint>
 
 #ifndef rt_NodeWords
@@ -35,69 +34,6 @@ namespace rt
 namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Lane i holds the number getLane(i). Where numbers come from memory, that is faster than gathering
-/// them is, also where there are instructions for it.
-template <class T, int Lanes, class GetLane>
-HWY_INLINE hn::Vec<hn::CappedTag<T, Lanes>> SetLanes(const GetLane& getLane, int first = 0)
-{
-  const hn::CappedTag<T, Lanes> tag;
-  if constexpr (Lanes == 1)
-  {
-    return hn::Set(tag, getLane(first));
-  }
-#if HWY_TARGET != HWY_SCALAR
-  else
-  {
-    constexpr int half = Lanes / 2;
-    return hn::Combine(
-      tag, SetLanes<T, half>(getLane, first + half), SetLanes<T, half>(getLane, first));
-  }
-#endif
-}
-
-/// Lane i from from[places[i]].
-template <class T, int Lanes>
-HWY_INLINE auto LoadLanes(const T* from, const std::size_t* places)
-{
-  return SetLanes<T, Lanes>([=](int lane) { return from[places[lane]]; });
-}
-
-/// Whole numbers from 0 to 2^52.
-template <class Vector>
-auto ToNumbers(Vector whole)
-{
-  const hn::DFromV<Vector> tag;
-  const hn::RebindToUnsigned<decltype(tag)> numbers;
-  // Added to this, they stand in the lowest bits.
-  const Vector large = hn::Set(tag, 4503599627370496.0);
-  return hn::Sub(hn::BitCast(numbers, hn::Add(large, whole)), hn::BitCast(numbers, large));
-}
-
-/// The inverse.
-template <class Numbers>
-auto ToReal(Numbers whole)
-{
-  const hn::DFromV<Numbers> numbers;
-  const hn::RebindToFloat<decltype(numbers)> tag;
-  const auto large = hn::Set(tag, 4503599627370496.0);
-  return hn::Sub(hn::BitCast(tag, hn::Or(hn::BitCast(numbers, large), whole)), large);
-}
-
-/// Numbers of the lowest bits of words that have some.
-template <class Numbers>
-Numbers GetLowestBits(Numbers words)
-{
-  const hn::DFromV<Numbers> numbers;
-  const hn::RebindToSigned<decltype(numbers)> integers;
-  const hn::RebindToFloat<decltype(numbers)> tag;
-  const Numbers lowest = hn::And(words, hn::Sub(hn::Zero(numbers), words));
-  // It is the exponent; the 64th bit is a sign as well.
-  const Numbers exponent =
-    hn::ShiftRight<52>(hn::BitCast(numbers, hn::ConvertTo(tag, hn::BitCast(integers, lowest))));
-  return hn::And(hn::Sub(exponent, hn::Set(numbers, std::uint64_t{ 1023 })),
-    hn::Set(numbers, std::uint64_t{ 63 }));
-}
 
 /// Returns the coordinate of the node with that number (NodeOrder).
 template <class Numbers>

@@ -8,7 +8,7 @@
 #endif
 
 #include "DSMBricks/layout/GridPlanes.h"
-#include "DSMRayTracing/field/lattice/NodePath-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <hwy/highway.h>

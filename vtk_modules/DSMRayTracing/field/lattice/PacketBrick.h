@@ -72,7 +72,7 @@ public:
     double Largest = 0.0;  ///< value of the brick
 
     /// Returns whether that is where a ray leaves the cell, which has no crossing. `corners` and `end`: as in
-    /// CrossedCells, `value`: where the ray leaves; it is less than the rounding of Largest.
+    /// VoxelCrossing, `value`: where the ray leaves; it is less than the rounding of Largest.
     bool MayHide(const PacketBrick& brick, const double corners[8], const int cell[3],
       const double end[3], const bool forward[3], double value) const;
   };

@@ -9,14 +9,17 @@
 #include "DSMRayTracing/field/lattice/PacketKernel.h"
 
 #include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/base/VectorKernel.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
+#include "DSMRayTracing/field/cells/ExtremumCells-inl.h"
+#include "DSMRayTracing/field/cells/MediumCells-inl.h"
+#include "DSMRayTracing/field/cells/SurfaceCells-inl.h"
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
-#include "DSMRayTracing/field/lattice/ExtremumCells-inl.h"
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
-#include "DSMRayTracing/field/lattice/MediumCells-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
 #include "DSMRayTracing/field/lattice/NodePlanes-inl.h"
 #include "DSMRayTracing/field/lattice/Roughness-inl.h"
-#include "DSMRayTracing/field/lattice/SurfaceCells-inl.h"
+#include "DSMRayTracing/field/lattice/VoxelCrossing-inl.h"
 
 #include <hwy/highway.h>
 
@@ -40,6 +43,23 @@ public:
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
+
+  static PacketKernel Create(const char* name)
+  {
+    return { name, Width, &SetRays, &MeetBrick, &SearchBrick, &FindOccluded, &CountCrossings,
+      &March, &FindExtrema,
+      CreateMacrocellKernel<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+        std::uint32_t, std::int64_t, std::uint64_t, float, double>() };
+  }
+
+private:
+  using First = FirstCrossings<D, VoxelCrossing<D>::PlaceNumbers>;
+
+  template <class... Types>
+  static MacrocellKernel CreateMacrocellKernel()
+  {
+    return { &Roughness<Width>::Find, { MacrocellComparisonSteps<Types, Width>::Create()... } };
+  }
 
   static RayPacket::Mask SetRays(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
     const IndexSpace& space, const bricks::Index3& cells)
@@ -75,7 +95,7 @@ public:
       Vector enter = SetLanes<double, Width>([&](int lane) { return own[lane]->Min; });
       Vector leave = SetLanes<double, Width>([&](int lane) { return own[lane]->Max; });
       RayLines<D> lines;
-      Mask fits = GetMask(wanted, first);
+      Mask fits = GetBitMask(tag, wanted >> first);
       for (int axis = 0; axis < 3; ++axis)
       {
         const Vector start = Multiply(matrix, axis, origin);
@@ -139,16 +159,16 @@ public:
   static void SearchBrick(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], PacketHits& hits)
   {
-    CellCrossings crossings;
-    FirstCrossings<D> first(&crossings);
+    typename First::Found found;
+    First first(&found);
     Search(packet, rays, brick, origin, first);
-    Refine(crossings, hits);
+    Refine(found, hits);
   }
 
   static RayPacket::Mask FindOccluded(
     const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick, const double origin[3])
   {
-    FirstCrossings<D> first(nullptr);
+    First first(nullptr);
     return Search(packet, rays, brick, origin, first);
   }
 
@@ -174,7 +194,6 @@ public:
     return Search(packet, rays, brick, origin, cells);
   }
 
-private:
   template <class Visitor>
   static RayPacket::Mask Search(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], Visitor& visitor)
@@ -195,68 +214,26 @@ private:
   }
 
   static std::uint32_t GetBits(Mask mask) { return GetMaskBits(D(), mask); }
-  static Mask GetMask(RayPacket::Mask rays, int first)
-  {
-    const std::uint8_t bits[8] = { static_cast<std::uint8_t>(rays >> first) };
-    return hn::LoadMaskBits(D(), bits);
-  }
 
   /// Finds the exact intersections of rays with the surface.
-  static void Refine(const CellCrossings& crossings, PacketHits& hits)
+  static void Refine(const typename First::Found& found, PacketHits& hits)
   {
-    using Number = CellCrossings::Number;
     const D tag;
-    hits.Count = crossings.Count;
+    hits.Count = found.Count;
     hits.FromInside = 0;
-    std::copy_n(crossings.Ray, crossings.Count, hits.Ray);
-    for (int first = 0; first < crossings.Count; first += Width)
-    {
-      const auto load = [&](int number) { return hn::Load(tag, crossings.Values[number] + first); };
-      const Mask rays = hn::FirstN(tag, static_cast<std::size_t>(crossings.Count - first));
-      Vector coefficients[4];
-      for (int power = 0; power < 4; ++power)
+    std::copy_n(found.Ray, found.Count, hits.Ray);
+    found.Refine(tag,
+      [&](int first, Vector t, Vector position, std::uint32_t isFromInside)
       {
-        coefficients[power] = load(Number::Coefficients + power);
-      }
-      const Bracket<D> bracket{ load(Number::BeginS), load(Number::BeginValue), load(Number::EndS),
-        load(Number::EndValue) };
-      const Vector s = PacketCrossing<D>(tag, coefficients).Refine(rays, bracket);
-      const Vector enter = load(Number::Enter);
-      const Vector leave = load(Number::Leave);
-      const Vector t = hn::Add(enter, hn::Mul(s, hn::Sub(leave, enter)));
-      hn::Store(hn::IfThenElse(hn::Lt(leave, t), leave, t), tag, hits.T + first);
-      // Nothing changes its side before the bracket.
-      hits.FromInside |= RayPacket::Mask{ GetBits(hn::Ge(bracket.BeginValue, hn::Zero(tag))) }
-        << first;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const Vector start = load(Number::Start + axis);
-        const Vector way = load(Number::Way + axis);
-        hn::Store(ClampToUnit(hn::Add(start, hn::Mul(s, way))), tag, hits.Local[axis] + first);
-        hn::Store(load(Number::Cell + axis), tag, hits.Cell[axis] + first);
-      }
-    }
+        hn::Store(t, tag, hits.T + first);
+        hits.FromInside |= RayPacket::Mask{ isFromInside } << first;
+        VoxelCrossing<D>::SetPlace(
+          hits, first, position, [&](int number) { return found.GetPlace(tag, number, first); });
+      });
   }
 };
 
-template <class D>
-PacketKernel Create(const char* name, const MacrocellKernel& macrocells)
-{
-  return { name, PacketSteps<D>::Width, &PacketSteps<D>::SetRays, &PacketSteps<D>::MeetBrick,
-    &PacketSteps<D>::SearchBrick, &PacketSteps<D>::FindOccluded, &PacketSteps<D>::CountCrossings,
-    &PacketSteps<D>::March, &PacketSteps<D>::FindExtrema, &Roughness<PacketSteps<D>::Width>::Find,
-    macrocells };
-}
-
-PacketKernel CreateWide()
-{
-  return Create<hn::CappedTag<double, 8>>(hwy::TargetName(HWY_TARGET), CreateMacrocellKernel<8>());
-}
-
-PacketKernel CreateSingle()
-{
-  return Create<hn::CappedTag<double, 1>>("one ray at a time", CreateMacrocellKernel<1>());
-}
+RT_CREATE_KERNEL(PacketKernel, PacketSteps, double, 8)
 
 } // namespace HWY_NAMESPACE
 } // namespace rt
@@ -266,25 +243,7 @@ HWY_AFTER_NAMESPACE();
 namespace rt
 {
 
-namespace
-{
-
-HWY_EXPORT(CreateWide);
-HWY_EXPORT(CreateSingle);
-
-} // namespace
-
-const PacketKernel& PacketKernel::GetBest()
-{
-  static const PacketKernel best = HWY_DYNAMIC_DISPATCH(CreateWide)();
-  return best;
-}
-
-std::vector<PacketKernel> PacketKernel::GetAll()
-{
-  return CreateForAllTargets<PacketKernel>(
-    { HWY_DYNAMIC_DISPATCH(CreateSingle)() }, [] { return HWY_DYNAMIC_DISPATCH(CreateWide)(); });
-}
+RT_DISPATCH_KERNEL(PacketKernel)
 
 } // namespace rt
 #endif

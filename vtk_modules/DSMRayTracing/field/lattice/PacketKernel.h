@@ -3,9 +3,8 @@
 #define rt_PacketKernel_h
 
 #include "DSMBricks/base/Box.h"
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
-#include "DSMRayTracing/field/lattice/MacrocellSamples.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
@@ -60,9 +59,6 @@ struct PacketKernel
   /// Returns those that have met the goal.
   RayPacket::Mask (*FindExtrema)(const RayPacket& packet, RayPacket::Mask rays,
     const PacketBrick& brick, const double origin[3], RayExtrema& extrema);
-
-  /// Returns the largest bend of the values along a line, for finite samples; see Roughness.
-  double (*FindRoughness)(const MacrocellSamples& samples);
 
   /// For TypedPacketBrick.
   MacrocellKernel Macrocells;

@@ -2,8 +2,8 @@
 #ifndef rt_RayBeam_h
 #define rt_RayBeam_h
 
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 

@@ -8,9 +8,9 @@
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
+#include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/NodeOrder.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
-#include "DSMRayTracing/field/lattice/PacketKernel.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 
 #include <glm/geometric.hpp>
@@ -30,8 +30,8 @@ class TransferTest
 public:
   /// `axes`: from index or grid space to the world. `planes`: of a rectilinear grid, or null; `origin`: the brick's
   /// first cell there.
-  TransferTest(const TransferFunction& function, const PacketKernel& kernel, const glm::dmat3& axes,
-    const bricks::GridPlanes* planes, const double origin[3])
+  TransferTest(const TransferFunction& function, const MacrocellKernel& kernel,
+    const glm::dmat3& axes, const bricks::GridPlanes* planes, const double origin[3])
     : Function(function)
     , Kernel(kernel)
     , Axes(axes)
@@ -127,7 +127,7 @@ private:
   }
 
   const TransferFunction& Function;
-  const PacketKernel& Kernel;
+  const MacrocellKernel& Kernel;
   glm::dmat3 Axes;
   const bricks::GridPlanes* Planes;
   const double* Origin;

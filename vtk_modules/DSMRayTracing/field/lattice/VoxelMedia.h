@@ -61,7 +61,7 @@ protected:
       axes[axis] /= scale[axis];
     }
     const TransferTest<T> test(
-      function, this->Kernel, axes, field.GetIndexSpace().GetPlanes(), brick.Lower);
+      function, this->Kernel.Macrocells, axes, field.GetIndexSpace().GetPlanes(), brick.Lower);
     const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
     dark = this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
     return meets;

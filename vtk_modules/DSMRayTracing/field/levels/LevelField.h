@@ -3,7 +3,7 @@
 #define rt_LevelField_h
 
 #include "DSMBricks/levels/LevelVoxels.h"
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/IndexedField.h"
 
 #include <glm/mat3x3.hpp>

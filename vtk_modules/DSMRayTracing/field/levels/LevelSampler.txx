@@ -4,7 +4,7 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/TrilinearCell.h"
+#include "DSMRayTracing/field/grid/TrilinearCell.h"
 
 #include <cmath>
 #include <cstdint>

@@ -4,8 +4,8 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
-#include "DSMRayTracing/field/lattice/HitGradient.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/HitGradient.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 #include "DSMRayTracing/field/lattice/IsovalueTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/field/levels/LevelPackets.h"

@@ -5,10 +5,10 @@
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMBricks/layout/VoxelField.h"
 #include "DSMCore/base/Block.h"
-#include "DSMRayTracing/field/lattice/CellNeighbourhood.h"
-#include "DSMRayTracing/field/lattice/CellSteps.h"
-#include "DSMRayTracing/field/lattice/GradientStencil.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/CellNeighbourhood.h"
+#include "DSMRayTracing/field/grid/CellSteps.h"
+#include "DSMRayTracing/field/grid/GradientStencil.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 #include "DSMRayTracing/ray/CellHit.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMCore/base/Block.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/GridWalk.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/GridWalk.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,8 +3,8 @@
 #define rt_GradientStencil_h
 
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/CellNeighbourhood.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/CellNeighbourhood.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 
 #include <cmath>
 #include <cstddef>

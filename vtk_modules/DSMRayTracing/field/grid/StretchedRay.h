@@ -4,7 +4,7 @@
 
 #include "DSMBricks/layout/GridPlanes.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
 
 #include <cstddef>
 

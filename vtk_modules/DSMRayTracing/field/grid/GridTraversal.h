@@ -3,12 +3,12 @@
 #define rt_GridTraversal_h
 
 #include "DSMBricks/layout/VoxelBrick.h"
-#include "DSMRayTracing/field/lattice/CornerTest.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/GridWalk.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
-#include "DSMRayTracing/field/lattice/MacrocellWalk.h"
-#include "DSMRayTracing/field/lattice/TrilinearIsosurface.h"
+#include "DSMRayTracing/field/grid/CornerTest.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/GridWalk.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/MacrocellWalk.h"
+#include "DSMRayTracing/field/grid/TrilinearIsosurface.h"
 #include "DSMRayTracing/ray/CellHit.h"
 
 namespace rt

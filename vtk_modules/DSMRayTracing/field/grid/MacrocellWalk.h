@@ -3,8 +3,8 @@
 #define rt_MacrocellWalk_h
 
 #include "DSMBricks/layout/VoxelBrick.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/GridWalk.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/GridWalk.h"
 
 #include <algorithm>
 

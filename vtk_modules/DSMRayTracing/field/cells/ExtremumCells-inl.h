@@ -8,8 +8,7 @@
 #endif
 
 #include "DSMRayTracing/base/MaskBits-inl.h"
-#include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
-#include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/ray/RayExtrema.h"
 
 #include <hwy/highway.h>
@@ -24,14 +23,14 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Visitor for BrickSearch, for rays that look for their largest or smallest value. A ray never
-/// finds a larger value than that of a cell's largest corner, so bricks and macrocells without
-/// larger values can be skipped. Skipping depends on the other rays, but the result does not.
+/// Visitor for rays that look for their largest or smallest value; see CellCrossing. A ray never finds a larger value
+/// than the largest of a cell's range, so what has no larger values can be skipped. Skipping depends on the other rays,
+/// but the result does not.
 template <class D>
 class ExtremumCells
 {
 public:
-  static constexpr bool TakesMacrocells = false;
+  static constexpr bool NeedsBehavior = false;
 
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
@@ -42,19 +41,17 @@ public:
   {
   }
 
-  HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
+  template <class Crossing>
+  HWY_INLINE std::uint32_t Visit(const Crossing& cells)
   {
+    static_assert(Crossing::HasRange, "extrema are limited by the range of the cell's values");
     const D tag;
-    const Vector sign = hn::Set(tag, this->Extrema.Sign);
-    Vector corners[8];
-    for (int corner = 0; corner < 8; ++corner)
+    Vector least;
+    Vector most;
+    cells.FindRange(least, most);
+    if (this->Extrema.Sign < 0.0)
     {
-      corners[corner] = hn::Mul(cells.Corners[corner], sign);
-    }
-    Vector most = corners[0];
-    for (const Vector& corner : corners)
-    {
-      most = hn::Max(most, corner);
+      most = hn::Neg(least);
     }
     const Vector known = LoadLanes<double, Width>(this->Extrema.Value, cells.Ray);
     const Mask promising = hn::And(cells.Crossing, hn::Gt(most, known));
@@ -64,7 +61,7 @@ public:
     }
     Vector value;
     Vector place;
-    PacketCrossing<D>(tag, corners, cells.Start, cells.End).FindLargest(value, place);
+    cells.GetCubics(hn::Set(tag, this->Extrema.Sign)).FindLargest(value, place);
     value = hn::Min(value, most);
     std::uint32_t better = GetMaskBits(tag, hn::And(promising, hn::Gt(value, known))) & cells.There;
     const std::uint32_t ended =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/IndexSpace.h"
+#include "DSMRayTracing/field/grid/IndexSpace.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/GridWalk.h"
+#include "DSMRayTracing/field/grid/GridWalk.h"
 
-#include "DSMRayTracing/field/lattice/StretchedRay.h"
+#include "DSMRayTracing/field/grid/StretchedRay.h"
 
 namespace rt
 {

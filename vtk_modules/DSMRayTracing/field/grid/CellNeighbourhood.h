@@ -5,7 +5,7 @@
 #include "DSMBricks/base/Box.h"
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/base/Lanes.h"
-#include "DSMRayTracing/field/lattice/IsovalueLevel.h"
+#include "DSMRayTracing/field/grid/IsovalueLevel.h"
 
 #include <algorithm>
 

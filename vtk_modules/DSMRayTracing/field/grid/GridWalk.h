@@ -2,7 +2,7 @@
 #ifndef rt_GridWalk_h
 #define rt_GridWalk_h
 
-#include "DSMRayTracing/field/lattice/GridRay.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
 
 #include <cstdint>
 

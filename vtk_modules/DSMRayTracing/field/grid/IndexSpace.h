@@ -3,8 +3,8 @@
 #define rt_IndexSpace_h
 
 #include "DSMBricks/layout/GridPlanes.h"
-#include "DSMRayTracing/field/lattice/GridRay.h"
-#include "DSMRayTracing/field/lattice/StretchedRay.h"
+#include "DSMRayTracing/field/grid/GridRay.h"
+#include "DSMRayTracing/field/grid/StretchedRay.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/mat3x3.hpp>

@@ -4,7 +4,7 @@
 
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/field/Cubic.h"
-#include "DSMRayTracing/field/lattice/TrilinearCell.h"
+#include "DSMRayTracing/field/grid/TrilinearCell.h"
 
 namespace rt
 {

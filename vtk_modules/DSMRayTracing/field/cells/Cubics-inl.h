@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Included once for each instruction set; see PacketKernel.cxx.
-#if defined(rt_PacketCrossing_inl_h) == defined(HWY_TARGET_TOGGLE)
-#ifdef rt_PacketCrossing_inl_h
-#undef rt_PacketCrossing_inl_h
+#if defined(rt_Cubics_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_Cubics_inl_h
+#undef rt_Cubics_inl_h
 #else
-#define rt_PacketCrossing_inl_h
+#define rt_Cubics_inl_h
 #endif
 
 #include <hwy/highway.h>
@@ -28,43 +28,26 @@ struct Bracket
   hn::Vec<D> EndValue;
 };
 
-/// FindFirstCrossing of TrilinearIsosurface.h, and its basis in TrilinearCell.h, for a vector of rays: the
-/// same operations in the same order, so that the results are equal bit for bit. A branch there becomes a
-/// selection here, or a loop that continues while any ray needs it. It is known that a ray crosses before the
-/// position is known: so the last, long part can wait until many rays have reached that point.
+/// Values along the ways of a vector of rays, each from 0 to 1: Cubic.h for several rays, with the same operations in
+/// the same order, so that the results are equal bit for bit. A branch there becomes a selection here, or a loop that
+/// continues while any ray needs it. It is known that a ray crosses before the position is known: so the last, long
+/// part can wait until many rays have reached that point.
 template <class D>
-class PacketCrossing
+class Cubics
 {
 public:
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
 
-  PacketCrossing(D tag, const Vector corners[8], const Vector start[3], const Vector end[3])
-    : Tag(tag)
-    , Zero(hn::Zero(tag))
-    , One(hn::Set(tag, 1.0))
-  {
-    const Vector direction[3] = { hn::Sub(end[0], start[0]), hn::Sub(end[1], start[1]),
-      hn::Sub(end[2], start[2]) };
-    this->SetCoefficients(corners, start, direction);
-    const Vector x00 = this->Interpolate(corners[0], corners[1], end[0]);
-    const Vector x10 = this->Interpolate(corners[2], corners[3], end[0]);
-    const Vector x01 = this->Interpolate(corners[4], corners[5], end[0]);
-    const Vector x11 = this->Interpolate(corners[6], corners[7], end[0]);
-    this->Last = this->Interpolate(
-      this->Interpolate(x00, x10, end[1]), this->Interpolate(x01, x11, end[1]), end[2]);
-  }
-
-  /// From coefficients, for Refine.
-  PacketCrossing(D tag, const Vector coefficients[4])
-    : Tag(tag)
-    , Zero(hn::Zero(tag))
-    , One(hn::Set(tag, 1.0))
+  /// `last`: values at the ends of the ways, with the same bits as at the begins of those that follow.
+  HWY_INLINE Cubics(const Vector coefficients[4], Vector last)
+    : Zero(hn::Zero(D()))
+    , One(hn::Set(D(), 1.0))
     , C0(coefficients[0])
     , C1(coefficients[1])
     , C2(coefficients[2])
     , C3(coefficients[3])
-    , Last(coefficients[0])
+    , Last(last)
   {
   }
 
@@ -110,7 +93,7 @@ public:
     const Mask several = hn::And(rays, this->MayCrossAgain(inside0, inside3));
     bracket = { this->Zero, this->C0, this->One, this->Last };
     Mask crossing = hn::And(rays, single);
-    if (hn::AllFalse(this->Tag, several))
+    if (hn::AllFalse(D(), several))
     {
       return crossing;
     }
@@ -141,7 +124,7 @@ public:
     const Mask inside3 = this->IsInside(this->Last);
     const Mask several = hn::And(rays, this->MayCrossAgain(inside, inside3));
     Vector count = this->Zero;
-    if (!hn::AllFalse(this->Tag, several))
+    if (!hn::AllFalse(D(), several))
     {
       Vector extrema[2];
       this->FindExtrema(extrema);
@@ -161,7 +144,7 @@ public:
   /// Returns the crossings of `rays` in their brackets; undefined for the other rays.
   Vector Refine(Mask rays, const Bracket<D>& bracket) const
   {
-    const D tag = this->Tag;
+    const D tag;
     const Vector tolerance = hn::Set(tag, 1e-7);
     const Vector half = hn::Set(tag, 0.5);
     const Mask beginInside = this->IsInside(bracket.BeginValue);
@@ -206,8 +189,8 @@ private:
   /// Bernstein coefficients, of which those of the first and the last are given.
   Mask MayCrossAgain(Mask inside0, Mask inside3) const
   {
-    const Vector third = hn::Set(this->Tag, 1.0 / 3.0);
-    const Vector two = hn::Set(this->Tag, 2.0);
+    const Vector third = hn::Set(D(), 1.0 / 3.0);
+    const Vector two = hn::Set(D(), 2.0);
     const Mask inside1 = this->IsInside(hn::Add(this->C0, hn::Mul(this->C1, third)));
     const Mask inside2 =
       this->IsInside(hn::Add(this->C0, hn::Mul(hn::Add(hn::Mul(two, this->C1), this->C2), third)));
@@ -217,41 +200,6 @@ private:
     return hn::Or(hn::And(change0, hn::Or(change1, change2)), hn::And(change1, change2));
   }
 
-  Vector Interpolate(Vector a, Vector b, Vector u) const
-  {
-    return hn::Add(hn::Mul(hn::Sub(this->One, u), a), hn::Mul(u, b));
-  }
-
-  void SetCoefficients(const Vector corners[8], const Vector start[3], const Vector direction[3])
-  {
-    Vector linear[4][2];
-    for (int edge = 0; edge < 4; ++edge)
-    {
-      const Vector a = corners[2 * edge];
-      const Vector b = corners[2 * edge + 1];
-      linear[edge][0] = this->Interpolate(a, b, start[0]);
-      linear[edge][1] = hn::Mul(direction[0], hn::Sub(b, a));
-    }
-    Vector quadratic[2][3];
-    for (int face = 0; face < 2; ++face)
-    {
-      const Vector* a = linear[2 * face];
-      const Vector* b = linear[2 * face + 1];
-      quadratic[face][0] = this->Interpolate(a[0], b[0], start[1]);
-      quadratic[face][1] = hn::Add(
-        this->Interpolate(a[1], b[1], start[1]), hn::Mul(direction[1], hn::Sub(b[0], a[0])));
-      quadratic[face][2] = hn::Mul(direction[1], hn::Sub(b[1], a[1]));
-    }
-    const Vector* a = quadratic[0];
-    const Vector* b = quadratic[1];
-    this->C0 = this->Interpolate(a[0], b[0], start[2]);
-    this->C1 =
-      hn::Add(this->Interpolate(a[1], b[1], start[2]), hn::Mul(direction[2], hn::Sub(b[0], a[0])));
-    this->C2 =
-      hn::Add(this->Interpolate(a[2], b[2], start[2]), hn::Mul(direction[2], hn::Sub(b[1], a[1])));
-    this->C3 = hn::Mul(direction[2], hn::Sub(b[2], a[2]));
-  }
-
   Vector Evaluate(Vector s) const
   {
     const Vector inner = hn::Add(this->C2, hn::Mul(s, this->C3));
@@ -259,8 +207,8 @@ private:
   }
   Vector EvaluateDerivative(Vector s) const
   {
-    const Vector two = hn::Set(this->Tag, 2.0);
-    const Vector three = hn::Set(this->Tag, 3.0);
+    const Vector two = hn::Set(D(), 2.0);
+    const Vector three = hn::Set(D(), 3.0);
     const Vector inner = hn::Add(hn::Mul(two, this->C2), hn::Mul(hn::Mul(s, three), this->C3));
     return hn::Add(this->C1, hn::Mul(s, inner));
   }
@@ -271,8 +219,8 @@ private:
     const hn::RebindToUnsigned<D> bits;
     constexpr int fraction = 52;
     const auto exponent = hn::Set(bits, std::uint64_t{ 0x7ff } << fraction);
-    const auto bounded = hn::BitCast(bits, hn::Min(largest, hn::Set(this->Tag, 0x1p1022)));
-    return hn::BitCast(this->Tag,
+    const auto bounded = hn::BitCast(bits, hn::Min(largest, hn::Set(D(), 0x1p1022)));
+    return hn::BitCast(D(),
       hn::Sub(hn::Set(bits, std::uint64_t{ 2 * 1023 } << fraction), hn::And(bounded, exponent)));
   }
 
@@ -281,7 +229,7 @@ private:
   {
     const Vector scale =
       this->GetScale(hn::Max(hn::Abs(this->C3), hn::Max(hn::Abs(this->C2), hn::Abs(this->C1))));
-    const Vector a = hn::Mul(hn::Set(this->Tag, 3.0), hn::Mul(scale, this->C3));
+    const Vector a = hn::Mul(hn::Set(D(), 3.0), hn::Mul(scale, this->C3));
     const Vector b = hn::Mul(scale, this->C2);
     const Vector c = hn::Mul(scale, this->C1);
     const Vector discriminant = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
@@ -311,10 +259,8 @@ private:
       hn::Or(hn::Ge(ahead, high), otherSideAhead));
   }
 
-  D Tag;
   Vector Zero;
   Vector One;
-  // The cubic, and its value at s = 1 by way of the corners.
   Vector C0;
   Vector C1;
   Vector C2;

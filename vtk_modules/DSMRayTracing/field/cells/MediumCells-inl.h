@@ -8,10 +8,12 @@
 #endif
 
 #include "DSMRayTracing/base/Lanes.h"
+#include "DSMRayTracing/base/LanesRow-inl.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/base/Transmittance-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
-#include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
-#include "DSMRayTracing/field/lattice/PacketCrossing-inl.h"
+#include "DSMRayTracing/field/cells/CellCrossing-inl.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 
@@ -21,7 +23,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -30,104 +31,14 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// exp(-depth) of numbers that are not negative, to 1e-13; the same bits for vectors of any width.
-template <class Vector>
-HWY_INLINE Vector GetTransmittance(Vector depth)
-{
-  const hn::DFromV<Vector> tag;
-  const hn::RebindToUnsigned<decltype(tag)> bits;
-  const Vector bounded = hn::Min(depth, hn::Set(tag, 700.0));
-  // The power of two, and what is left: between -ln(2) / 2 and ln(2) / 2.
-  const Vector large = hn::Set(tag, 6755399441055744.0);
-  const Vector raised = hn::Sub(large, hn::Mul(bounded, hn::Set(tag, 1.4426950408889634)));
-  const Vector power = hn::Sub(raised, large);
-  const Vector high = hn::Mul(power, hn::Set(tag, 0.693147180369123816490));
-  const Vector low = hn::Mul(power, hn::Set(tag, 1.90821492927058770002e-10));
-  const Vector rest = hn::Sub(hn::Sub(hn::Neg(bounded), high), low);
-  constexpr double factors[] = { 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
-    1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0 };
-  Vector sum = hn::Set(tag, factors[0]);
-  for (std::size_t order = 1; order < std::size(factors); ++order)
-  {
-    sum = hn::Add(hn::Mul(sum, rest), hn::Set(tag, factors[order]));
-  }
-  // The whole number stands in the lowest bits of `raised`.
-  const auto exponent =
-    hn::ShiftLeft<52>(hn::Add(hn::BitCast(bits, raised), hn::Set(bits, std::uint64_t{ 1023 })));
-  return hn::Mul(sum, hn::BitCast(tag, exponent));
-}
-
-/// Emission and extinction, as Lanes has them, in vectors that are as wide as the processor's.
-class Row
-{
-public:
-  using Tag = hn::CappedTag<double, 4>;
-  static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
-  static constexpr int Parts = 4 / Width;
-
-  Row() = default;
-  HWY_INLINE explicit Row(double all)
-  {
-    for (auto& part : this->Part)
-    {
-      part = hn::Set(Tag(), all);
-    }
-  }
-  HWY_INLINE explicit Row(const Lanes& lanes)
-  {
-    for (int part = 0; part < Parts; ++part)
-    {
-      this->Part[part] = hn::LoadU(Tag(), reinterpret_cast<const double*>(&lanes) + part * Width);
-    }
-  }
-  HWY_INLINE void Store(Lanes& lanes) const
-  {
-    for (int part = 0; part < Parts; ++part)
-    {
-      hn::StoreU(this->Part[part], Tag(), reinterpret_cast<double*>(&lanes) + part * Width);
-    }
-  }
-
-  friend HWY_INLINE Row operator+(const Row& a, const Row& b)
-  {
-    Row sum;
-    for (int part = 0; part < Parts; ++part)
-    {
-      sum.Part[part] = hn::Add(a.Part[part], b.Part[part]);
-    }
-    return sum;
-  }
-  friend HWY_INLINE Row operator-(const Row& a, const Row& b)
-  {
-    Row difference;
-    for (int part = 0; part < Parts; ++part)
-    {
-      difference.Part[part] = hn::Sub(a.Part[part], b.Part[part]);
-    }
-    return difference;
-  }
-  friend HWY_INLINE Row operator*(const Row& a, const Row& b)
-  {
-    Row product;
-    for (int part = 0; part < Parts; ++part)
-    {
-      product.Part[part] = hn::Mul(a.Part[part], b.Part[part]);
-    }
-    return product;
-  }
-
-private:
-  hn::Vec<Tag> Part[Parts];
-};
-
-/// Visitor for BrickSearch, for rays through a medium. Within a cell, the value along a ray is a cubic. It is
-/// divided into enough pieces that it is nearly linear in each, as far as the transfer function makes a difference;
-/// each piece is integrated over its values. A macrocell in which values hardly bend is integrated in one step.
+/// Visitor for rays through a medium; see CellCrossing. Within a cell, the value along a ray is a cubic. It is divided
+/// into enough pieces that it is nearly linear in each, as far as the transfer function makes a difference; each piece
+/// is integrated over its values. A crossing may stand for several cells in which values hardly bend.
 template <class D>
 class MediumCells
 {
 public:
-  static constexpr bool TakesMacrocells = true;
+  static constexpr bool NeedsBehavior = true;
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
@@ -139,38 +50,11 @@ public:
   {
   }
 
-  HWY_INLINE std::uint32_t Visit(const CrossedCells<D>& cells)
+  template <class Crossing>
+  HWY_INLINE std::uint32_t Visit(const Crossing& cells)
   {
-    const D tag;
-    const std::uint32_t left = GetMaskBits(tag, cells.Crossing) & cells.There;
-    if (left == 0)
-    {
-      return 0;
-    }
-    Pieces pieces;
-    PacketCrossing<D>(tag, cells.Corners, cells.Start, cells.End).GetCoefficients(pieces.Cubic);
-    return this->Go(cells, left, pieces,
-      [&](std::uint32_t lanes, MediumBehavior<D>& behavior)
-      { this->FindBehavior(cells.Corners, lanes, behavior); });
-  }
-
-  HWY_INLINE std::uint32_t Pass(const PassedMacrocells<D>& passed)
-  {
-    const D tag;
-    const std::uint32_t left = GetMaskBits(tag, hn::Lt(passed.Enter, passed.Exit)) & passed.There;
-    if (left == 0)
-    {
-      return 0;
-    }
-    const Vector two = hn::Set(tag, 2.0);
-    const Vector bend =
-      hn::Mul(two, hn::Sub(hn::Add(passed.First, passed.Last), hn::Mul(two, passed.Middle)));
-    Pieces pieces;
-    pieces.Cubic[0] = passed.First;
-    pieces.Cubic[1] = hn::Sub(hn::Sub(passed.Last, passed.First), bend);
-    pieces.Cubic[2] = bend;
-    pieces.Cubic[3] = hn::Zero(tag);
-    return this->Go(passed, left, pieces, [](std::uint32_t, MediumBehavior<D>&) {});
+    const std::uint32_t left = GetMaskBits(D(), cells.Crossing) & cells.There;
+    return left == 0 ? 0 : this->Go(cells, left);
   }
 
 private:
@@ -206,13 +90,13 @@ private:
     }
   };
 
-  /// Takes those of `left` through cells or macrocells. `refine(lanes, behavior)`: of those lanes, more exactly.
-  /// Returns those that are dark then.
-  template <class Crossed, class Refine>
-  HWY_INLINE std::uint32_t Go(
-    const Crossed& crossed, std::uint32_t left, Pieces& pieces, const Refine& refine)
+  /// Takes those of `left` through their cells. Returns those that are dark then.
+  template <class Crossing>
+  HWY_INLINE std::uint32_t Go(const Crossing& crossed, std::uint32_t left)
   {
     const D tag;
+    Pieces pieces;
+    crossed.GetCubics().GetCoefficients(pieces.Cubic);
     const Vector one = hn::Set(tag, 1.0);
     const Vector scale = hn::Set(tag, this->Function.GetScale());
     for (Vector& coefficient : pieces.Cubic)
@@ -228,11 +112,14 @@ private:
       hn::Abs(pieces.Cubic[1]), hn::Add(hn::Abs(pieces.Cubic[2]), hn::Abs(pieces.Cubic[3])));
     MediumBehavior<D> behavior = crossed.Behavior;
     Vector count = GetCount(length, bend, range, behavior);
-    const std::uint32_t several = GetMaskBits(tag, hn::Gt(count, one)) & left;
-    if (several != 0)
+    if constexpr (Crossing::HasRange)
     {
-      refine(several, behavior);
-      count = GetCount(length, bend, range, behavior);
+      const std::uint32_t several = GetMaskBits(tag, hn::Gt(count, one)) & left;
+      if (several != 0)
+      {
+        this->FindBehavior(crossed, several, behavior);
+        count = GetCount(length, bend, range, behavior);
+      }
     }
     if (this->Light.JoinedLength > 0.0)
     {
@@ -280,18 +167,15 @@ private:
     return hn::Min(hn::Max(count, hn::Set(tag, 1.0)), hn::Set(tag, MostPieces));
   }
 
-  /// Finds the behavior of the function between the values at the corners of the cells of `lanes`.
+  /// Finds the behavior of the function in the ranges of the cells of `lanes`.
+  template <class Crossing>
   HWY_INLINE void FindBehavior(
-    const Vector corners[8], std::uint32_t lanes, MediumBehavior<D>& found) const
+    const Crossing& crossed, std::uint32_t lanes, MediumBehavior<D>& found) const
   {
     const D tag;
-    Vector least = corners[0];
-    Vector largest = corners[0];
-    for (int corner = 1; corner < 8; ++corner)
-    {
-      least = hn::Min(least, corners[corner]);
-      largest = hn::Max(largest, corners[corner]);
-    }
+    Vector least;
+    Vector largest;
+    crossed.FindRange(least, largest);
     const Vector scale = hn::Set(tag, this->Function.GetScale());
     HWY_ALIGN double first[Width];
     HWY_ALIGN double last[Width];
@@ -316,16 +200,17 @@ private:
   }
 
   /// TransferFunction::Integrate, and what it says of the slope; not a number in divided bins.
-  HWY_INLINE Row Integrate(const Located& places, int lane) const
+  HWY_INLINE LanesRow Integrate(const Located& places, int lane) const
   {
     const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
-    const Row way(places.Way[lane]);
-    return Row(bin.Integral) + (Row(bin.Begin) + Row(0.5) * (Row(bin.Growth) * way)) * way;
+    const LanesRow way(places.Way[lane]);
+    return LanesRow(bin.Integral) +
+      (LanesRow(bin.Begin) + LanesRow(0.5) * (LanesRow(bin.Growth) * way)) * way;
   }
-  HWY_INLINE Row GetSlope(const Located& places, int lane) const
+  HWY_INLINE LanesRow GetSlope(const Located& places, int lane) const
   {
     const TransferFunction::Bin& bin = this->Table[places.Number[lane]];
-    return Row(bin.Begin) + Row(bin.Growth) * Row(places.Way[lane]);
+    return LanesRow(bin.Begin) + LanesRow(bin.Growth) * LanesRow(places.Way[lane]);
   }
   /// The growth of the integral between two places, or the slope at the second one where `isShort`,
   /// in any bins. `integral`: becomes that up to the second one.
@@ -338,9 +223,9 @@ private:
   }
 
   /// Goes on to where piece `number` ends, for those of `lanes` that have as many. Returns those that are dark.
-  template <class Crossed>
+  template <class Crossing>
   HWY_INLINE std::uint32_t Add(
-    const Crossed& crossed, int number, std::uint32_t lanes, Pieces& pieces)
+    const Crossing& crossed, int number, std::uint32_t lanes, Pieces& pieces)
   {
     const D tag;
     const Vector one = hn::Set(tag, 1.0);
@@ -369,10 +254,11 @@ private:
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      const Row integral = this->Integrate(located, lane);
-      const Row growth = (shortOnes >> lane & 1) != 0 ? this->GetSlope(located, lane)
-                                                      : integral - Row(pieces.Integral[lane]);
-      (growth * Row(factors[lane])).Store(amounts[lane]);
+      const LanesRow integral = this->Integrate(located, lane);
+      const LanesRow growth = (shortOnes >> lane & 1) != 0
+        ? this->GetSlope(located, lane)
+        : integral - LanesRow(pieces.Integral[lane]);
+      (growth * LanesRow(factors[lane])).Store(amounts[lane]);
       integral.Store(pieces.Integral[lane]);
       depths[lane] = amounts[lane].High[1];
     }
@@ -430,7 +316,7 @@ private:
             this->FindPart(starts[lane], stops[lane], std::log(2.0 * transmittance) / depths[lane]);
       }
       Lanes& sum = this->Light.GetSum(ray);
-      (Row(sum) + Row(amounts[lane]) * Row(transmittance * parts[lane])).Store(sum);
+      (LanesRow(sum) + LanesRow(amounts[lane]) * LanesRow(transmittance * parts[lane])).Store(sum);
       transmittance *= passes[lane];
       ended |= std::uint32_t{ this->Light.IsDark(ray) } << lane;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMRayTracing/field/lattice/CellNeighbourhood.h"
+#include "DSMRayTracing/field/grid/CellNeighbourhood.h"
 
-#include "DSMRayTracing/field/lattice/CellSteps.h"
+#include "DSMRayTracing/field/grid/CellSteps.h"
 
 #include <cmath>
 
