@@ -42,6 +42,8 @@ ROOMS = {
         "selection_and_export", "displays", "sources",
     ],
 }
+# Folder of a room -> its folders, lowest first, likewise; files beside them may use all.
+FOLDERS = {"vtk_modules/DSMRayTracing/field": ["cells", "grid", "walk", "lattice", "levels"]}
 MPI_FILE = "vtk_modules/DSMCore/transport/MpiTransport.cxx"
 
 
@@ -89,6 +91,18 @@ def find_arrows_back(root):
                     yield f"{name}: includes {include}, but {room} must not use {used}"
 
 
+def find_arrows_up(root):
+    for room, folders in FOLDERS.items():
+        for path in sorted((root / room).glob("*/*")):
+            name = path.relative_to(root).as_posix()
+            if path.parent.name not in folders:
+                yield f"{name}: {path.parent.name} is no folder of {room}"
+                continue
+            for used in re.findall(rf'"{room.removeprefix("vtk_modules/")}/(\w+)/', path.read_text()):
+                if used not in folders[: folders.index(path.parent.name) + 1]:
+                    yield f"{name}: uses {used}, which {path.parent.name} must not use"
+
+
 def find_unlisted(root):
     for listing in (root / module / "CMakeLists.txt" for module in ROOMS):
         # Classes are listed by their path without a suffix, files by the whole.
@@ -110,7 +124,9 @@ def find_untold(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = [*find_faults(root), *find_arrows_back(root), *find_unlisted(root), *find_untold(root)]
+    faults = [
+        *find_faults(root), *find_arrows_back(root), *find_arrows_up(root), *find_unlisted(root), *find_untold(root),
+    ]
     print("\n".join(faults) or "every room uses the rooms below it only, and every file is listed")
     return 1 if faults else 0
 
