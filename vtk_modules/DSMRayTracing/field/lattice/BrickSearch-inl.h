@@ -36,8 +36,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// FindCrossedNodes). Then rays wait for their next macrocell, or the next cell in it, and those that
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
 ///
-/// `Visitor` says what is looked for: it visits each VoxelCrossing. If it `NeedsBehavior`, it visits macrocells that
-/// are smooth (PacketPart) as a whole, each MacrocellCrossing. `Planes`: UniformPlanes or StretchedPlanes.
+/// `Visitor` says what is looked for: it visits each VoxelCrossing. If it `NeedsBehavior`, it visits entire
+/// macrocells that are smooth (PacketPart), each MacrocellCrossing. `Planes`: UniformPlanes or StretchedPlanes.
 template <class D, class Visitor, class Planes = UniformPlanes<D>>
 class BrickSearch
 {

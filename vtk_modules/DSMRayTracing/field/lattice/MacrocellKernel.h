@@ -34,7 +34,7 @@ struct MacrocellComparison
     const bricks::MacrocellRange<T>* ranges, std::ptrdiff_t row, std::ptrdiff_t slice, T first);
 };
 
-/// What is done with macrocells, for TypedPacketBrick; a part of PacketKernel. Pure; any thread.
+/// Functions for macrocells, which TypedPacketBrick calls; a part of PacketKernel. Pure; any thread.
 struct MacrocellKernel
 {
   /// Returns the largest bend of the values along a line, for finite samples; see Roughness.
