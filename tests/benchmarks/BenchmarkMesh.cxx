@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BenchmarkMesh.h"
 
-#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/PublishMesh.h"
+#include "DSMBricks/build/TriangleBrickBuilder.h"
 #include "DSMBricks/build/TriangleReader.h"
 
 #include <glm/common.hpp>
@@ -165,18 +166,17 @@ std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
     static_cast<float>(mesh->Lower.z) };
   const glm::dvec3 size = mesh->Upper - mesh->Lower;
   const bricks::MortonCode curve(lower, std::max({ size.x, size.y, size.z }));
-  const bricks::TriangleReader reader(this->Triangles, mesh->Attributes, &mesh->Origin.x);
+  const bricks::TriangleReader reader(this->Triangles, mesh->Attributes);
   bricks::TriangleBrickBuilder builder(
     mesh->Attributes, curve, bricks::TriangleBrickHeader::LargestTriangles);
-  const auto words = reader.GetRecordBytes() / sizeof(std::uint32_t);
+  const auto words = reader.GetKind().RecordBytes / sizeof(std::uint32_t);
   std::vector<std::uint32_t> records;
   std::vector<bricks::BoundingBox> boxes;
   std::vector<std::uint32_t> bytes;
   std::vector<dsm::Fragment> mine;
   const auto closeBrick = [&]
   {
-    for (bricks::TriangleBrickBuilder::Brick& brick :
-      builder.Build(records.data(), records.size() / words))
+    for (bricks::RecordBrick& brick : builder.Build(records.data(), records.size() / words))
     {
       if (bytes.size() % static_cast<std::size_t>(messenger.GetSize()) ==
         static_cast<std::size_t>(messenger.GetRank()))

@@ -6,8 +6,8 @@
 #include "tests/scenes/GeneratedVolume.h"
 #include "tests/unit/mesh/TestMesh.h"
 
+#include "DSMBricks/build/PublishMesh.h"
 #include "DSMBricks/build/PublishVolume.h"
-#include "DSMBricks/build/TriangleMeshBuilder.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRequest.h"

@@ -5,7 +5,7 @@
 #include "tests/support/SphereScene.h"
 #include "tests/unit/mesh/TestMesh.h"
 
-#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/PublishMesh.h"
 
 /// The noisy sphere's isosurfaces, a blob of triangles that cuts through them, and a colored
 /// terrain of squares below, with edges, shadows and translucency across the objects.

@@ -5,7 +5,7 @@
 #include "tests/support/LoopbackCluster.h"
 #include "tests/support/TriangleArrays.h"
 
-#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/PublishMesh.h"
 #include "DSMCore/table/ObjectStore.h"
 #include "DSMRayTracing/frame/FrameAgreement.h"
 #include "DSMRayTracing/mesh/MeshSearch.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMBricks/accel/BrickBvh.h"
+#include "DSMBricks/accel/BrickHierarchy.h"
 #include "DSMBricks/accel/RangedBvhNode.h"
 #include "DSMBricks/accel/WideBvhBuilder.h"
 #include "DSMRayTracing/ray/ChildrenInRange.h"

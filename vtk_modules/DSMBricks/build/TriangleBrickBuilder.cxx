@@ -22,12 +22,12 @@ TriangleBrickBuilder::TriangleBrickBuilder(
   this->VertexWords += attributes.TextureCoordinates ? 2 : 0;
 }
 
-std::vector<TriangleBrickBuilder::Brick> TriangleBrickBuilder::Build(
+std::vector<RecordBrick> TriangleBrickBuilder::Build(
   const std::uint32_t* records, std::size_t count)
 {
   this->Sort(records, count);
   const std::size_t parts = (count + this->LargestTriangles - 1) / this->LargestTriangles;
-  std::vector<Brick> bricks;
+  std::vector<RecordBrick> bricks;
   bricks.reserve(parts);
   for (std::size_t part = 0; part < parts; ++part)
   {
@@ -58,9 +58,9 @@ void TriangleBrickBuilder::Sort(const std::uint32_t* records, std::size_t count)
     });
 }
 
-TriangleBrickBuilder::Brick TriangleBrickBuilder::BuildBrick(const Key* keys, std::uint32_t count)
+RecordBrick TriangleBrickBuilder::BuildBrick(const Key* keys, std::uint32_t count)
 {
-  Brick brick;
+  RecordBrick brick;
   this->MeasureTriangles(keys, count, brick);
   this->Tree.Build(this->Boxes);
   this->CollectVertices(keys, count);
@@ -76,7 +76,8 @@ TriangleBrickBuilder::Brick TriangleBrickBuilder::BuildBrick(const Key* keys, st
   return brick;
 }
 
-void TriangleBrickBuilder::MeasureTriangles(const Key* keys, std::uint32_t count, Brick& brick)
+void TriangleBrickBuilder::MeasureTriangles(
+  const Key* keys, std::uint32_t count, RecordBrick& brick)
 {
   this->Boxes.assign(count, BoundingBox());
   BoundingBox extents;

@@ -8,6 +8,7 @@
 #include "DSMBricks/build/TriangleRecord.h"
 #include "DSMBricks/layout/MeshAttributes.h"
 #include "DSMBricks/layout/TriangleBrickHeader.h"
+#include "DSMBricks/sorted/RecordReader.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -16,24 +17,16 @@
 namespace bricks
 {
 
-/// Makes bricks out of the records of one cell of the mesh's octree. The bytes depend on the set of
-/// records only, not on their order. One for each thread; keeps its storage.
-class TriangleBrickBuilder
+/// Makes bricks of triangles; see RecordBrickBuilder. A cell becomes several where more than a brickful have one
+/// centroid.
+class TriangleBrickBuilder final : public RecordBrickBuilder
 {
 public:
-  struct Brick
-  {
-    BoundingBox Bounds;
-    std::vector<std::byte> Bytes;
-  };
-
   /// Bricks have at most `largestTriangles`, itself at most TriangleBrickHeader::LargestTriangles.
   TriangleBrickBuilder(
     const MeshAttributes& attributes, const MortonCode& order, std::uint32_t largestTriangles);
 
-  /// One brick for most cells; several, in order, for a cell with too many triangles, which happens
-  /// where more than a brickful have one centroid.
-  std::vector<Brick> Build(const std::uint32_t* records, std::size_t count);
+  std::vector<RecordBrick> Build(const std::uint32_t* records, std::size_t count) override;
 
 private:
   struct Key
@@ -43,8 +36,8 @@ private:
   };
 
   void Sort(const std::uint32_t* records, std::size_t count);
-  Brick BuildBrick(const Key* keys, std::uint32_t count);
-  void MeasureTriangles(const Key* keys, std::uint32_t count, Brick& brick);
+  RecordBrick BuildBrick(const Key* keys, std::uint32_t count);
+  void MeasureTriangles(const Key* keys, std::uint32_t count, RecordBrick& brick);
   /// Numbers the vertices in the order in which the leaves use them.
   void CollectVertices(const Key* keys, std::uint32_t count);
   /// The words of a corner as they are compared: position, normal, then what else points have.

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/build/TriangleReader.h"
 
+#include "DSMBricks/build/TriangleBrickBuilder.h"
 #include "DSMBricks/layout/OctahedralNormal.h"
+#include "DSMBricks/layout/TriangleBrickHeader.h"
 #include "DSMCore/base/Error.h"
+
+#include <glm/common.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -46,19 +51,56 @@ bool HasArea(const float corners[9])
 
 } // namespace
 
-TriangleReader::TriangleReader(const TriangleSource& source, const MeshAttributes& attributes,
-  const double origin[3], double scale)
+TriangleReader::TriangleReader(const TriangleSource& source, const MeshAttributes& attributes)
   : Source(source)
   , Attributes(attributes)
   , Layout(attributes)
-  , InverseScale(1.0 / scale)
 {
-  std::copy_n(origin, 3, this->Origin);
 }
 
-bool TriangleReader::ReadPositions(
-  const TriangleSource& source, std::uint64_t triangle, double positions[9])
+RecordKind TriangleReader::GetKind() const
 {
+  return { "mesh", "triangles", this->Layout.GetBytes(), this->EstimateBrickBytes(),
+    TriangleBrickHeader::LargestTriangles };
+}
+
+double TriangleReader::EstimateBrickBytes() const
+{
+  // A scanned surface has half as many points as triangles, and some are in several bricks.
+  constexpr double verticesPerTriangle = 0.6;
+  constexpr double nodeBytes = 5.0;
+  const MeshAttributes& has = this->Attributes;
+  const auto bytesOf = [](Attachment attachment, double bytes)
+  {
+    return attachment == Attachment::None
+      ? 0.0
+      : bytes * (attachment == Attachment::Points ? verticesPerTriangle : 1.0);
+  };
+  return nodeBytes + 3 * sizeof(std::uint16_t) + verticesPerTriangle * sizeof(TriangleBrickVertex) +
+    bytesOf(has.Values, 4.0) + bytesOf(has.Colors, 4.0) +
+    bytesOf(has.TextureCoordinates ? Attachment::Points : Attachment::None, 8.0);
+}
+
+std::unique_ptr<RecordBrickBuilder> TriangleReader::CreateBuilder(
+  const MortonCode& order, std::uint32_t largestCount) const
+{
+  return std::make_unique<TriangleBrickBuilder>(this->Attributes, order, largestCount);
+}
+
+bool TriangleReader::FindBounds(std::uint64_t triangle, glm::dvec3& lower, glm::dvec3& upper) const
+{
+  double positions[9];
+  const bool isFinite = this->ReadPositions(triangle, positions);
+  const glm::dvec3 corners[3] = { glm::make_vec3(positions), glm::make_vec3(positions + 3),
+    glm::make_vec3(positions + 6) };
+  lower = glm::min(glm::min(corners[0], corners[1]), corners[2]);
+  upper = glm::max(glm::max(corners[0], corners[1]), corners[2]);
+  return isFinite;
+}
+
+bool TriangleReader::ReadPositions(std::uint64_t triangle, double positions[9]) const
+{
+  const TriangleSource& source = this->Source;
   std::uint64_t points[3];
   source.GetTriangle(triangle, points);
   bool finite = true;
@@ -91,16 +133,17 @@ bool TriangleReader::FindCode(
 bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const
 {
   double positions[9];
-  if (!ReadPositions(this->Source, triangle, positions))
+  if (!this->ReadPositions(triangle, positions))
   {
     return false;
   }
+  const double perUnit = 1.0 / this->Space.Scale;
   float read[9];
   for (int word = 0; word < 9; ++word)
   {
     // Adding zero makes zeros positive.
     read[word] =
-      static_cast<float>((positions[word] - this->Origin[word % 3]) * this->InverseScale) + 0.0f;
+      static_cast<float>((positions[word] - this->Space.Origin[word % 3]) * perUnit) + 0.0f;
   }
   int first = 0;
   for (int corner = 1; corner < 3; ++corner)

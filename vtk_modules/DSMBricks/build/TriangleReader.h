@@ -7,6 +7,7 @@
 #include "DSMBricks/sorted/RecordReader.h"
 
 #include <cstdint>
+#include <memory>
 
 namespace bricks
 {
@@ -15,25 +16,25 @@ namespace bricks
 class TriangleReader final : public RecordReader
 {
 public:
-  /// `origin` and `scale` are those of TriangleMesh.
-  TriangleReader(const TriangleSource& source, const MeshAttributes& attributes,
-    const double origin[3], double scale = 1.0);
+  TriangleReader(const TriangleSource& source, const MeshAttributes& attributes);
 
-  const char* GetNames() const override { return "triangles"; }
+  RecordKind GetKind() const override;
   std::uint64_t GetCount() const override { return this->Source.GetTriangleCount(); }
-  std::size_t GetRecordBytes() const override { return this->Layout.GetBytes(); }
+  /// Throws dsm::Error when the triangle has a point that the source does not.
+  bool FindBounds(std::uint64_t triangle, glm::dvec3& lower, glm::dvec3& upper) const override;
+  void SetSpace(const BrickSpace& space) override { this->Space = space; }
   /// The code is that of the triangle's centroid.
   bool FindCode(
     std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const override;
   /// A TriangleRecord.
   void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const override;
-
-  /// Three positions in the mesh's space. False when one is not finite. Throws dsm::Error when the
-  /// triangle has a point that the source does not.
-  static bool ReadPositions(
-    const TriangleSource& source, std::uint64_t triangle, double positions[9]);
+  std::unique_ptr<RecordBrickBuilder> CreateBuilder(
+    const MortonCode& order, std::uint32_t largestCount) const override;
 
 private:
+  double EstimateBrickBytes() const;
+  /// Three positions in the mesh's space. False when one is not finite.
+  bool ReadPositions(std::uint64_t triangle, double positions[9]) const;
   /// The record's corners; order[i] is the corner of the source that comes to the i-th place. False for a triangle that
   /// no ray can hit.
   bool ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const;
@@ -45,8 +46,7 @@ private:
   const TriangleSource& Source;
   MeshAttributes Attributes;
   TriangleRecord Layout;
-  double Origin[3];
-  double InverseScale;
+  BrickSpace Space;
 };
 
 } // namespace bricks

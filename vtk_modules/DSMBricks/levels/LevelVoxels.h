@@ -2,8 +2,8 @@
 #ifndef bricks_LevelVoxels_h
 #define bricks_LevelVoxels_h
 
+#include "DSMBricks/accel/BrickHierarchy.h"
 #include "DSMBricks/layout/IsovalueSurvey.h"
-#include "DSMBricks/levels/LevelHierarchy.h"
 #include "DSMBricks/levels/LevelLattice.h"
 #include "DSMCore/publish/BlockSegment.h"
 
@@ -18,8 +18,8 @@ struct LevelVoxels
 {
   LevelLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
-  LevelHierarchy Hierarchy;
-  IsovalueSurvey Survey; ///< of all bricks, without fills (FillValues.h); the same on every rank
+  RangedBrickBvh Hierarchy; ///< boxes are in cells of level 0
+  IsovalueSurvey Survey;    ///< of all bricks, without fills (FillValues.h); the same on every rank
 };
 
 } // namespace bricks

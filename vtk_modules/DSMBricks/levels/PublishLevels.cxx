@@ -489,6 +489,38 @@ IsovalueSurvey Survey(const LevelVoxels& voxels, dsm::Messenger& messenger)
   return LeaveOutFills(look({}).Within, { &voxels.Hierarchy.GetRanges() }, look);
 }
 
+/// In cells of level 0, rounded outward.
+BoundingBox GetBox(const LevelLattice& lattice, const LevelBrick& brick)
+{
+  const glm::dvec3 scale(lattice.GetScales().Get(brick.Level));
+  const glm::dvec3 lower = glm::dvec3(brick.Cells.Min) / scale;
+  const glm::dvec3 upper = glm::dvec3(brick.Cells.Max) / scale;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  float below[4] = {};
+  float above[4] = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    below[axis] = std::nextafter(static_cast<float>(lower[axis]), -infinity);
+    above[axis] = std::nextafter(static_cast<float>(upper[axis]), infinity);
+  }
+  BoundingBox box;
+  box.Add(Float4::Load(below));
+  box.Add(Float4::Load(above));
+  return box;
+}
+
+/// The hierarchy over the bricks of all levels. `ranges`: by their numbers.
+RangedBrickBvh CreateHierarchy(const LevelLattice& lattice, const std::vector<ValueRange>& ranges)
+{
+  std::vector<BoundingBox> boxes;
+  boxes.reserve(lattice.GetBricks().size());
+  for (const LevelBrick& brick : lattice.GetBricks())
+  {
+    boxes.push_back(GetBox(lattice, brick));
+  }
+  return RangedBrickBvh(boxes, ranges);
+}
+
 } // namespace
 
 LevelLattice DivideLevels(std::string_view what, const LevelScales& scales, ScalarType type,
@@ -537,9 +569,9 @@ std::shared_ptr<LevelVoxels> PublishLevels(std::string_view what, const LevelLat
   voxels->Segment = store.Publish(what, std::move(*directory), nodes, sink, {}, place);
   try
   {
-    std::vector<ValueRange> ranges = MacrocellHierarchy::GatherRanges(*voxels->Segment, messenger);
-    messenger.RunTogether(
-      what, [&] { voxels->Hierarchy = LevelHierarchy(lattice, std::move(ranges)); });
+    const std::vector<ValueRange> ranges =
+      MacrocellHierarchy::GatherRanges(*voxels->Segment, messenger);
+    messenger.RunTogether(what, [&] { voxels->Hierarchy = CreateHierarchy(lattice, ranges); });
     voxels->Survey = Survey(*voxels, messenger);
   }
   catch (...) // on every rank

@@ -25,6 +25,7 @@ RecordSource::RecordSource(
   const RecordReader& reader, const SortedCells& cells, std::uint64_t first, std::uint64_t last)
   : Reader(reader)
   , Cells(cells)
+  , RecordBytes(reader.GetKind().RecordBytes)
   , Cell(first)
   , LastCell(last)
 {
@@ -46,7 +47,7 @@ bool RecordSource::Next(dsm::Fragment& fragment)
   {
     return false;
   }
-  const std::size_t size = this->Reader.GetRecordBytes();
+  const std::size_t size = this->RecordBytes;
   const std::uint64_t count = std::min(this->Cells.GetRange(this->Cell).second - this->Position,
     std::max<std::uint64_t>(FragmentBytes / size, 1));
   fragment.Block = this->Cell;
@@ -156,16 +157,16 @@ RecordBlocks::RecordBlocks(std::string_view what, const SortedCells& cells,
   messenger.RunTogether(what,
     [&]
     {
+      const RecordKind kind = reader.GetKind();
       bytes.reserve(cells.GetCount());
       for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
       {
         const std::uint64_t needed =
-          RecordOffset + cells.GetPrimitiveCount(cell) * reader.GetRecordBytes();
+          RecordOffset + cells.GetPrimitiveCount(cell) * kind.RecordBytes;
         if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
         {
-          throw dsm::Error(std::to_string(cells.GetPrimitiveCount(cell)) + " " + reader.GetNames() +
-            " have the same centroid. Remove duplicate " + reader.GetNames() +
-            " or outlier points.");
+          throw dsm::Error(std::to_string(cells.GetPrimitiveCount(cell)) + " " + kind.Primitives +
+            " have the same centroid. Remove duplicate " + kind.Primitives + " or outlier points.");
         }
         bytes.push_back(static_cast<std::uint32_t>(needed));
       }

@@ -32,6 +32,7 @@ public:
 private:
   const RecordReader& Reader;
   const SortedCells& Cells;
+  std::size_t RecordBytes;
   std::uint64_t Cell;
   std::uint64_t LastCell;
   std::uint64_t Begin = 0; ///< this rank's primitives in the cells

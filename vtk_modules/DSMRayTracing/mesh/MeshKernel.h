@@ -2,7 +2,7 @@
 #ifndef rt_MeshKernel_h
 #define rt_MeshKernel_h
 
-#include "DSMBricks/accel/BrickBvh.h"
+#include "DSMBricks/accel/BrickHierarchy.h"
 #include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshPacket.h"
 

@@ -2,7 +2,7 @@
 #include "vtkDSMMeshData.h"
 
 #include "DSMBricks/base/ByteHash.h"
-#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/build/PublishMesh.h"
 #include "DSMCore/memory/HostMemory.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMProgress.h"

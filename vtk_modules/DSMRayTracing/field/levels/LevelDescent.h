@@ -25,7 +25,7 @@ template <class Predicate>
 BeamBricks FindLevelBricks(
   const bricks::LevelVoxels& field, const Predicate& mayHold, const RayBeam& beam)
 {
-  using Node = bricks::LevelHierarchy::Node;
+  using Node = bricks::RangedBrickBvh::Node;
   BeamBricks found;
   found.Usable = true;
   std::copy_n(beam.GetForward(), 3, found.Forward);
@@ -65,7 +65,7 @@ BeamBricks FindLevelBricks(
         continue;
       }
       BeamBricks::Brick brick;
-      brick.Id = bricks::LevelHierarchy::GetBrick(reference);
+      brick.Id = bricks::RangedBrickBvh::GetBrick(reference);
       const bricks::Box& cells = field.Lattice.GetBrick(brick.Id).Cells;
       for (int axis = 0; axis < 3; ++axis)
       {

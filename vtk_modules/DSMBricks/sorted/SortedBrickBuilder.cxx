@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DSMBricks/build/TriangleMeshBuilder.h"
+#include "DSMBricks/sorted/SortedBrickBuilder.h"
 
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/Error.h"
@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <string>
 
 namespace bricks
 {
@@ -28,15 +29,8 @@ constexpr double LargestUnscaled = 1e18;
 /// The camera and the depth of VTK and OpenGL end soon after this.
 constexpr double LargestCoordinate = 1e30;
 
-/// Memory for each triangle of a rank's own piece during sorting, in bytes.
-constexpr double OwnTriangleBytes = 32.0;
-
-/// Summary of a rank's piece, for all ranks.
-struct PieceSummary
-{
-  std::uint64_t Triangles = 0;
-  MeshAttributes Attributes;
-};
+/// Memory for each primitive of a rank's own piece during sorting, in bytes.
+constexpr double OwnPrimitiveBytes = 32.0;
 
 struct Bounds
 {
@@ -50,85 +44,47 @@ struct Bounds
   }
 };
 
+/// Summary of a brick, for messages between ranks.
+struct BrickSummary
+{
+  float Lower[3];
+  float Upper[3];
+  ValueRange Range;
+  std::uint32_t Bytes;
+  /// How many more bricks the same cell has behind this one.
+  std::uint32_t Following;
+};
+
 } // namespace
 
-TriangleMeshBuilder::TriangleMeshBuilder(std::string_view what, const TriangleSource& source,
-  const TriangleMeshSettings& settings, dsm::Messenger& messenger)
+SortedBrickBuilder::SortedBrickBuilder(std::string_view what, RecordReader& reader,
+  const SortedBrickSettings& settings, dsm::Messenger& messenger)
   : What(what)
-  , Source(source)
+  , Reader(reader)
+  , Kind(reader.GetKind())
   , Settings(settings)
   , Messages(messenger)
 {
   this->Settings.Threads = std::max(settings.Threads, 1);
-  this->AgreeOnPieces();
+  for (const std::uint64_t count : this->Messages.AllGatherValue(this->Reader.GetCount()))
+  {
+    this->GivenCount += count;
+  }
   this->CheckMemory();
-  this->FindBounds();
+  this->FindSpace();
   // Halving a cell that is too large leaves cells that are seven tenths full on the average.
-  this->LargestTriangles = static_cast<std::uint32_t>(
-    std::clamp(1.4 * this->Settings.BrickBytes / this->EstimateBrickBytesPerTriangle(), 1.0,
-      static_cast<double>(TriangleBrickHeader::LargestTriangles)));
-  this->Reader.emplace(
-    this->Source, this->Mesh->Attributes, &this->Mesh->Origin.x, this->Mesh->Scale);
+  this->LargestCount =
+    static_cast<std::uint32_t>(std::clamp(1.4 * this->Settings.BrickBytes / this->Kind.BrickBytes,
+      1.0, static_cast<double>(this->Kind.LargestCount)));
   this->Cells.emplace(
-    *this->Reader, this->Order, this->LargestTriangles, this->Settings.Threads, this->Messages);
-  std::uint64_t kept = 0;
+    this->Reader, this->Order, this->LargestCount, this->Settings.Threads, this->Messages);
   for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
   {
-    kept += this->Cells->GetPrimitiveCount(cell);
-  }
-  this->Mesh->Dropped = this->Mesh->Triangles - kept;
-  this->Mesh->Triangles = kept;
-}
-
-void TriangleMeshBuilder::AgreeOnPieces()
-{
-  const auto pieces = this->Messages.GatherValueTogether(this->What,
-    [&]
-    {
-      this->Mesh = std::make_shared<TriangleMesh>();
-      return PieceSummary{ this->Source.GetTriangleCount(), this->Source.GetAttributes() };
-    });
-  int first = -1;
-  for (std::size_t rank = 0; rank < pieces.size(); ++rank)
-  {
-    this->Mesh->Triangles += pieces[rank].Triangles;
-    if (pieces[rank].Triangles == 0)
-    {
-      continue;
-    }
-    if (first < 0)
-    {
-      first = static_cast<int>(rank);
-      this->Mesh->Attributes = pieces[rank].Attributes;
-    }
-    if (pieces[rank].Attributes != this->Mesh->Attributes)
-    {
-      throw dsm::Error(std::string(this->What) + ": The pieces of the mesh on ranks " +
-        std::to_string(first) + " and " + std::to_string(rank) +
-        " differ in their normals, values, colors, texture coordinates or edge flags. All pieces "
-        "must have the same arrays.");
-    }
+    this->Count += this->Cells->GetPrimitiveCount(cell);
   }
 }
 
-double TriangleMeshBuilder::EstimateBrickBytesPerTriangle() const
-{
-  // A scanned surface has half as many points as triangles, and some are in several bricks.
-  constexpr double verticesPerTriangle = 0.6;
-  constexpr double nodeBytes = 5.0;
-  const MeshAttributes& has = this->Mesh->Attributes;
-  const auto bytesOf = [](Attachment attachment, double bytes)
-  {
-    return attachment == Attachment::None
-      ? 0.0
-      : bytes * (attachment == Attachment::Points ? verticesPerTriangle : 1.0);
-  };
-  return nodeBytes + 3 * sizeof(std::uint16_t) + verticesPerTriangle * sizeof(TriangleBrickVertex) +
-    bytesOf(has.Values, 4.0) + bytesOf(has.Colors, 4.0) +
-    bytesOf(has.TextureCoordinates ? Attachment::Points : Attachment::None, 8.0);
-}
-
-void TriangleMeshBuilder::CheckMemory()
+void SortedBrickBuilder::CheckMemory()
 {
   const int ranksOnHost = this->Messages.GetRanksOnHost();
   this->Messages.RunTogether(this->What,
@@ -137,47 +93,43 @@ void TriangleMeshBuilder::CheckMemory()
       const std::uint64_t available = this->Settings.MemoryBytes > 0
         ? this->Settings.MemoryBytes
         : dsm::GetAvailableHostMemory() / static_cast<std::uint64_t>(ranksOnHost);
-      const double own = OwnTriangleBytes * static_cast<double>(this->Source.GetTriangleCount());
-      const double each = static_cast<double>(TriangleRecord(this->Mesh->Attributes).GetBytes()) +
-        this->EstimateBrickBytesPerTriangle();
-      const auto all = static_cast<double>(this->Mesh->Triangles);
+      const double own = OwnPrimitiveBytes * static_cast<double>(this->Reader.GetCount());
+      const double each = static_cast<double>(this->Kind.RecordBytes) + this->Kind.BrickBytes;
+      const auto all = static_cast<double>(this->GivenCount);
       const double share = all * each / this->Messages.GetSize();
       if (own + share > static_cast<double>(available))
       {
-        throw dsm::Error("The mesh has " + std::to_string(this->Mesh->Triangles) +
-          " triangles. To cut them into bricks, this rank needs about " +
+        const std::string dataset = this->Kind.Dataset;
+        const std::string primitives = this->Kind.Primitives;
+        throw dsm::Error("The " + dataset + " has " + std::to_string(this->GivenCount) + " " +
+          primitives + ". To cut them into bricks, this rank needs about " +
           dsm::FormatMebibytes(static_cast<std::uint64_t>(own + share)) + ", but has " +
           dsm::FormatMebibytes(available) + ". Use at least " +
           std::to_string(static_cast<std::uint64_t>(
-            std::ceil(all * (OwnTriangleBytes + each) / static_cast<double>(available)))) +
-          " ranks with as much memory, each with a part of the mesh, or a mesh with fewer "
-          "triangles.");
+            std::ceil(all * (OwnPrimitiveBytes + each) / static_cast<double>(available)))) +
+          " ranks with as much memory, each with a part of the " + dataset + ", or a " + dataset +
+          " with fewer " + primitives + ".");
       }
     });
 }
 
-void TriangleMeshBuilder::FindBounds()
+void SortedBrickBuilder::FindSpace()
 {
   Bounds mine;
   this->Messages.RunTogether(this->What,
     [&]
     {
       std::vector<Bounds> ofThread(this->Settings.Threads);
-      ParallelForChunks(this->Settings.Threads, this->Source.GetTriangleCount(), ChunkSize,
+      ParallelForChunks(this->Settings.Threads, this->Reader.GetCount(), ChunkSize,
         [&](std::size_t begin, std::size_t end, std::size_t, int thread)
         {
           Bounds bounds;
-          for (std::size_t triangle = begin; triangle < end; ++triangle)
+          for (std::size_t primitive = begin; primitive < end; ++primitive)
           {
-            double positions[9];
-            if (TriangleReader::ReadPositions(this->Source, triangle, positions))
+            Bounds own;
+            if (this->Reader.FindBounds(primitive, own.Lower, own.Upper))
             {
-              for (int corner = 0; corner < 3; ++corner)
-              {
-                const double* p = positions + 3 * corner;
-                const glm::dvec3 point(p[0], p[1], p[2]);
-                bounds.Add({ point, point });
-              }
+              bounds.Add(own);
             }
           }
           ofThread[thread].Add(bounds);
@@ -194,11 +146,12 @@ void TriangleMeshBuilder::FindBounds()
   }
   if (all.Lower.x <= all.Upper.x)
   {
-    this->SetOrigin(all.Lower, all.Upper);
+    this->SetSpace(all.Lower, all.Upper);
   }
+  this->Reader.SetSpace(this->Space);
 }
 
-void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& upper)
+void SortedBrickBuilder::SetSpace(const glm::dvec3& lower, const glm::dvec3& upper)
 {
   const glm::dvec3 size = upper - lower;
   const double extent = std::max({ size.x, size.y, size.z });
@@ -209,37 +162,38 @@ void TriangleMeshBuilder::SetOrigin(const glm::dvec3& lower, const glm::dvec3& u
   }
   if (farthest > LargestCoordinate)
   {
-    char size[32];
-    std::snprintf(size, sizeof(size), "%g", farthest);
-    throw dsm::Error(std::string(this->What) + ": The mesh has a coordinate of size " + size +
+    char text[32];
+    std::snprintf(text, sizeof(text), "%g", farthest);
+    throw dsm::Error(std::string(this->What) + ": The " + this->Kind.Dataset +
+      " has a coordinate of size " + text +
       "; the maximum is 1e30. Scale the dataset or remove the point.");
   }
   if (farthest > LargestUnscaled)
   {
-    this->Mesh->Scale = std::exp2(std::ceil(std::log2(farthest / LargestUnscaled)));
+    this->Space.Scale = std::exp2(std::ceil(std::log2(farthest / LargestUnscaled)));
   }
-  const double perUnit = 1.0 / this->Mesh->Scale;
+  const double perUnit = 1.0 / this->Space.Scale;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double middle = 0.5 * lower[axis] + 0.5 * upper[axis];
     if (extent > 0.0 && std::abs(middle) > 4.0 * extent)
     {
       const double unit = std::exp2(std::ceil(std::log2(extent)));
-      this->Mesh->Origin[axis] = std::round(middle / unit) * unit;
+      this->Space.Origin[axis] = std::round(middle / unit) * unit;
     }
   }
   float corner[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    corner[axis] = static_cast<float>((lower[axis] - this->Mesh->Origin[axis]) * perUnit);
-    this->Mesh->Lower[axis] = corner[axis];
-    this->Mesh->Upper[axis] =
-      static_cast<float>((upper[axis] - this->Mesh->Origin[axis]) * perUnit);
+    const double origin = this->Space.Origin[axis];
+    corner[axis] = static_cast<float>((lower[axis] - origin) * perUnit);
+    this->Space.Lower[axis] = corner[axis];
+    this->Space.Upper[axis] = static_cast<float>((upper[axis] - origin) * perUnit);
   }
   this->Order = MortonCode(corner, extent * perUnit);
 }
 
-std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::CreateRecordSource() const
+std::unique_ptr<dsm::FragmentSource> SortedBrickBuilder::CreateRecordSource() const
 {
   std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
   const std::uint64_t threads = static_cast<std::uint64_t>(this->Settings.Threads);
@@ -247,40 +201,44 @@ std::unique_ptr<dsm::FragmentSource> TriangleMeshBuilder::CreateRecordSource() c
   for (std::uint64_t thread = 0; thread < threads; ++thread)
   {
     sources.push_back(std::make_unique<RecordSource>(
-      *this->Reader, *this->Cells, cells * thread / threads, cells * (thread + 1) / threads));
+      this->Reader, *this->Cells, cells * thread / threads, cells * (thread + 1) / threads));
   }
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
 }
 
-void TriangleMeshBuilder::BuildBricks(dsm::FunctionRef<void(double)> progress)
+void SortedBrickBuilder::BuildBricks(dsm::FunctionRef<void(double)> progress)
 {
   BricksOfCells bricks;
   {
     std::unique_ptr<dsm::FragmentSource> source;
     this->Messages.RunTogether(this->What, [&] { source = this->CreateRecordSource(); });
     const RecordBlocks records(
-      this->What, *this->Cells, *this->Reader, *source, this->Messages, progress);
+      this->What, *this->Cells, this->Reader, *source, this->Messages, progress);
     this->Messages.RunTogether(this->What, [&] { bricks = this->BuildOwnBricks(records); });
   }
   this->GatherBricks(std::move(bricks));
   this->Cells.reset();
 }
 
-TriangleMeshBuilder::BricksOfCells TriangleMeshBuilder::BuildOwnBricks(const RecordBlocks& records)
+SortedBrickBuilder::BricksOfCells SortedBrickBuilder::BuildOwnBricks(
+  const RecordBlocks& records) const
 {
   BricksOfCells bricks(records.GetCount());
-  std::vector<TriangleBrickBuilder> builders(this->Settings.Threads,
-    TriangleBrickBuilder(this->Mesh->Attributes, this->Order, this->LargestTriangles));
+  std::vector<std::unique_ptr<RecordBrickBuilder>> builders(this->Settings.Threads);
+  for (auto& builder : builders)
+  {
+    builder = this->Reader.CreateBuilder(this->Order, this->LargestCount);
+  }
   ParallelFor(this->Settings.Threads, bricks.size(),
     [&](std::size_t index, int thread)
     {
-      bricks[index] = builders[thread].Build(
+      bricks[index] = builders[thread]->Build(
         records.GetRecords(index), this->Cells->GetPrimitiveCount(records.GetCell(index)));
     });
   return bricks;
 }
 
-void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
+void SortedBrickBuilder::GatherBricks(BricksOfCells bricksOfCells)
 {
   const auto all = this->Messages.GatherTogether(this->What,
     [&]
@@ -297,6 +255,7 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
           bricks[index].Bounds.Upper.Store(upper);
           std::copy_n(lower, 3, summary.Lower);
           std::copy_n(upper, 3, summary.Upper);
+          summary.Range = bricks[index].Range;
           summary.Bytes = static_cast<std::uint32_t>(bricks[index].Bytes.size());
           summary.Following = static_cast<std::uint32_t>(bricks.size() - 1 - index);
           const auto* bytes = reinterpret_cast<const std::byte*>(&summary);
@@ -312,8 +271,6 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
     {
       const dsm::RoundRobinAssigner assigner(this->Messages.GetSize());
       std::vector<std::size_t> next(all.size(), 0);
-      std::vector<BoundingBox> boxes;
-      std::vector<dsm::Fragment> ownBricks;
       std::size_t own = 0;
       for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
       {
@@ -332,25 +289,18 @@ void TriangleMeshBuilder::GatherBricks(BricksOfCells bricksOfCells)
           next[owner] += sizeof(summary);
           if (isOwn)
           {
-            ownBricks.push_back(
+            this->Bricks.push_back(
               { this->BrickBytes.size(), std::move(bricksOfCells[own][index++].Bytes) });
           }
           const float lower[4] = { summary.Lower[0], summary.Lower[1], summary.Lower[2], 0.0f };
           const float upper[4] = { summary.Upper[0], summary.Upper[1], summary.Upper[2], 0.0f };
-          boxes.push_back({ Float4::Load(lower), Float4::Load(upper) });
+          this->Boxes.push_back({ Float4::Load(lower), Float4::Load(upper) });
+          this->Ranges.push_back(summary.Range);
           this->BrickBytes.push_back(summary.Bytes);
         } while (summary.Following > 0);
         own += isOwn ? 1 : 0;
       }
-      this->Mesh->Bricks = BrickBvh(boxes);
-      this->Bricks = std::make_unique<BlockSource>(std::move(ownBricks));
     });
-}
-
-dsm::BlockDirectory TriangleMeshBuilder::TakeBrickDirectory()
-{
-  return { std::move(this->BrickBytes), dsm::RoundRobinAssigner(this->Messages.GetSize()),
-    this->Mesh->Bricks.GetBytes() };
 }
 
 } // namespace bricks
