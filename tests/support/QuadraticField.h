@@ -2,7 +2,9 @@
 #ifndef QuadraticField_h
 #define QuadraticField_h
 
+#include "DSMCore/table/ReplicatedStore.h"
 #include "DSMRayTracing/field/Field.h"
+#include "DSMRayTracing/field/FieldCheck.h"
 #include "DSMRayTracing/field/walk/PlainSampler.h"
 #include "DSMRayTracing/field/walk/WalkExtrema.h"
 #include "DSMRayTracing/field/walk/WalkMedia.h"
@@ -158,5 +160,8 @@ public:
       wanted, [&](int index) { gradients[index] = function.GetGradient(places[index].Point); });
   }
 };
+
+static_assert(
+  rt::FieldCheck<QuadraticField>::HasSearches<dsm::ReplicatedStore>(), "one store stands for all");
 
 #endif

@@ -20,8 +20,8 @@ class WalkSurfaces;
 
 /// Base of all kinds of fields. A field is values in space that can be walked and sampled: all that is shown of it
 /// comes from its Walk and its Sampler by default (room field/walk). A kind derives from this, brings what follows,
-/// and replaces a default where it is faster of its own. It is a small value: what it describes is shared, and
-/// outlives the frame.
+/// and replaces a default where it is faster of its own. FieldCheck looks for all of it when a kind is compiled. It is
+/// a small value: what it describes is shared, and outlives the frame.
 ///
 /// - `Values`: what is sampled. Several of them may have the same places: one defines the surfaces, another their
 ///   colors.

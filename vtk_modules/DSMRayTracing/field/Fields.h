@@ -2,16 +2,35 @@
 #ifndef rt_Fields_h
 #define rt_Fields_h
 
-#include "DSMRayTracing/field/lattice/LatticeField.h"
-#include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/field/FieldCheck.h"
+
+#define RT_FIELD_HEADER(begin) <DSMRayTracing/field/begin##Field.h>
+#include "DSMRayTracing/field/FieldList.h"
+#undef RT_FIELD_HEADER
 
 #include <variant>
 
 namespace rt
 {
 
-/// A field of any kind: the one list of the kinds of fields.
-using AnyField = std::variant<LatticeField, LevelField>;
+/// Kinds of fields.
+template <class... Kinds>
+struct FieldKinds
+{
+  static_assert((FieldCheck<Kinds>::HasAll() && ...), "see above");
+
+  using Any = std::variant<Kinds...>;
+  /// Returns whether all have what finds something in them, for one store; else, it does not compile.
+  template <class Store>
+  static constexpr bool HaveSearches()
+  {
+    return (FieldCheck<Kinds>::template HasSearches<Store>() && ...);
+  }
+};
+
+using AllFields = FieldKinds<RT_FIELD_CLASSES>;
+/// A field of any kind.
+using AnyField = AllFields::Any;
 
 } // namespace rt
 
