@@ -58,7 +58,9 @@ private:
   template <class... Types>
   static MacrocellKernel CreateMacrocellKernel()
   {
-    return { &Roughness<Width>::Find, { MacrocellComparisonSteps<Types, Width>::Create()... } };
+    // Samples are narrower than the packet's numbers, so vectors have room for more of them.
+    constexpr std::size_t samples = Width == 1 ? 1 : 8;
+    return { &Roughness<Width>::Find, { MacrocellComparisonSteps<Types, samples>::Create()... } };
   }
 
   static RayPacket::Mask SetRays(RayPacket& packet, const Ray* rays, RayPacket::Mask wanted,
