@@ -4,12 +4,14 @@
 
 #include "DSMBricks/levels/LevelVoxels.h"
 #include "DSMRayTracing/field/lattice/BeamBricks.h"
+#include "DSMRayTracing/field/lattice/ChildrenInBeam.h"
 #include "DSMRayTracing/field/lattice/RayBeam.h"
 #include "DSMRayTracing/field/levels/LevelField.h"
+#include "DSMRayTracing/ray/ChildrenInRange.h"
 #include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -25,7 +27,6 @@ template <class Predicate>
 BeamBricks FindLevelBricks(
   const bricks::LevelVoxels& field, const Predicate& mayHold, const RayBeam& beam)
 {
-  using Node = bricks::RangedBrickBvh::Node;
   BeamBricks found;
   found.Usable = true;
   std::copy_n(beam.GetForward(), 3, found.Forward);
@@ -34,47 +35,24 @@ BeamBricks FindLevelBricks(
     return found;
   }
   std::vector<std::pair<double, BeamBricks::Brick>> bricks;
-  std::vector<std::uint32_t> open{ 0 };
-  while (!open.empty())
-  {
-    const Node& node = field.Hierarchy.GetNodes()[open.back()];
-    open.pop_back();
-    for (int child = 0; child < node.Children; ++child)
+  TraverseWideBvh(field.Hierarchy.GetNodes(), ChildrenInRange(ChildrenInBeam(beam), mayHold),
+    [&](std::uint32_t leaf)
     {
+      BeamBricks::Brick brick;
+      brick.Id = bricks::RangedBrickBvh::GetBrick(leaf);
+      const bricks::LevelBrick& own = field.Lattice.GetBrick(brick.Id);
+      const glm::dvec3 scale(field.Lattice.GetScales().Get(own.Level));
       double lower[3];
       double upper[3];
       for (int axis = 0; axis < 3; ++axis)
       {
-        const double step = std::ldexp(1.0, static_cast<int>(node.Exponent[axis]) - 127);
-        const auto get = [&](int side)
-        {
-          const std::uint8_t bound = node.Bounds[(3 * side + axis) * Node::Width + child];
-          return static_cast<double>(node.Origin[axis]) + step * bound;
-        };
-        lower[axis] = get(0);
-        upper[axis] = get(1);
-      }
-      if (!mayHold(node.Ranges[child]) || !beam.MayMeetBox(lower, upper))
-      {
-        continue;
-      }
-      const std::uint32_t reference = node.References[child];
-      if ((reference & Node::LeafBit) == 0)
-      {
-        open.push_back(reference);
-        continue;
-      }
-      BeamBricks::Brick brick;
-      brick.Id = bricks::RangedBrickBvh::GetBrick(reference);
-      const bricks::Box& cells = field.Lattice.GetBrick(brick.Id).Cells;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        brick.Lower[axis] = static_cast<double>(cells.Min[axis]);
-        brick.Upper[axis] = static_cast<double>(cells.Max[axis]);
+        brick.Lower[axis] = static_cast<double>(own.Cells.Min[axis]);
+        brick.Upper[axis] = static_cast<double>(own.Cells.Max[axis]);
+        lower[axis] = brick.Lower[axis] / scale[axis];
+        upper[axis] = brick.Upper[axis] / scale[axis];
       }
       bricks.emplace_back(beam.GetEntry(lower, upper), brick);
-    }
-  }
+    });
   std::sort(bricks.begin(), bricks.end(),
     [](const auto& a, const auto& b)
     { return a.first < b.first || (a.first == b.first && a.second.Id < b.second.Id); });
