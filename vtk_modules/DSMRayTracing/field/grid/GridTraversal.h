@@ -15,17 +15,15 @@ namespace rt
 {
 
 /// Traverses one brick along a ray: its macrocells, then the cells of those whose range contains the
-/// isovalue. `Access` is notified of all reads; see BrickAccess.
-template <class T, class Access, class Ray = GridRay>
+/// isovalue.
+template <class T, class Ray = GridRay>
 class GridTraversal
 {
 public:
   /// `origin`: the brick's first cell.
-  GridTraversal(
-    const Ray& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin, const Access& access)
+  GridTraversal(const Ray& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin)
     : Line(ray)
     , Brick(brick)
-    , Reads(access)
     , Origin(origin)
     , CellStrides(brick.GetRow(), brick.GetSlice())
   {
@@ -83,11 +81,7 @@ private:
   {
     return VisitMacrocells(
       this->Line, this->Brick, this->Origin, enter, leave, limit,
-      [&](const bricks::MacrocellRange<T>& range)
-      {
-        this->Reads.ReadRange();
-        return level.Separates(range.Min, range.Max);
-      },
+      [&](const bricks::MacrocellRange<T>& range) { return level.Separates(range.Min, range.Max); },
       [&](const GridWalk& walk, double in, double out)
       { return this->WalkCells(level, walk, in, out, intersect); });
   }
@@ -112,7 +106,6 @@ private:
     for (;;)
     {
       const double exit = std::min(walk.GetExit(), leave);
-      this->Reads.ReadCell();
       if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
         intersect(walk, corner, t, exit))
       {
@@ -203,7 +196,6 @@ private:
 
   const Ray& Line;
   const bricks::VoxelBrick<T>& Brick;
-  const Access& Reads;
   Lanes Origin;
   NodeStrides CellStrides;
 };

@@ -8,7 +8,6 @@
 #include "DSMRayTracing/field/grid/BrickWalk.h"
 #include "DSMRayTracing/field/grid/GridRay.h"
 #include "DSMRayTracing/field/grid/HitGradient.h"
-#include "DSMRayTracing/field/lattice/BrickAccess.h"
 #include "DSMRayTracing/field/lattice/LatticeField.h"
 #include "DSMRayTracing/ray/CellHit.h"
 #include "DSMRayTracing/ray/Ray.h"
@@ -24,9 +23,8 @@ namespace rt
 /// Finds isosurface hits through a store (ObjectStore now; others have the same members): walks the
 /// coarse macrocells front to back, acquires each brick that may hold a surface once a visit, and
 /// searches it (GridTraversal). Pure: the result depends on the ray and the data only. One for each
-/// worker: it holds at most one pin, and none while it acquires or when a call returns. `Access`: see
-/// BrickAccess.
-template <class Store, template <class> class Access = BrickAccess>
+/// worker: it holds at most one pin, and none while it acquires or when a call returns.
+template <class Store>
 class IsosurfaceSearch
 {
 public:

@@ -16,8 +16,8 @@
 namespace rt
 {
 
-template <class Store, template <class> class Access>
-bool IsosurfaceSearch<Store, Access>::Intersect(const Sets& sets, const Ray& ray, Hit& hit) const
+template <class Store>
+bool IsosurfaceSearch<Store>::Intersect(const Sets& sets, const Ray& ray, Hit& hit) const
 {
   const IndexSpace space = sets.Field.GetIndexSpace();
   const bricks::BrickLattice& lattice = sets.Field.Voxels->Lattice;
@@ -44,10 +44,10 @@ bool IsosurfaceSearch<Store, Access>::Intersect(const Sets& sets, const Ray& ray
     });
 }
 
-template <class Store, template <class> class Access>
+template <class Store>
 template <class T, class Line>
-bool IsosurfaceSearch<Store, Access>::IntersectBricks(const Sets& sets, const Line& line,
-  double enter, double leave, Hit& hit, double gradient[3]) const
+bool IsosurfaceSearch<Store>::IntersectBricks(const Sets& sets, const Line& line, double enter,
+  double leave, Hit& hit, double gradient[3]) const
 {
   const bricks::VoxelField& field = *sets.Field.Voxels;
   const IsovaluePredicate mayHold(sets.Isovalues);
@@ -78,17 +78,16 @@ bool IsosurfaceSearch<Store, Access>::IntersectBricks(const Sets& sets, const Li
   return false;
 }
 
-template <class Store, template <class> class Access>
+template <class Store>
 template <class T, class Line>
-bool IsosurfaceSearch<Store, Access>::IntersectBrick(const Sets& sets, const Line& line,
+bool IsosurfaceSearch<Store>::IntersectBrick(const Sets& sets, const Line& line,
   const Walk<Line>& walk, CellHit& cell, int& isovalue, double gradient[3], bool& hasGradient) const
 {
   const typename Store::Pin pin =
     this->Blocks.Acquire(this->Self, *sets.Field.Voxels->Segment, walk.GetId());
   const bricks::VoxelBrick<T> voxels(pin.GetData());
   const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-  const Access<Store> access(this->Blocks, this->Self, *sets.Field.Voxels->Segment, walk.GetId());
-  const GridTraversal<T, Access<Store>, Line> traversal(line, voxels, walk.GetOrigin(), access);
+  const GridTraversal<T, Line> traversal(line, voxels, walk.GetOrigin());
   bool found = false;
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < sets.Isovalues.size(); ++index)
@@ -114,8 +113,8 @@ bool IsosurfaceSearch<Store, Access>::IntersectBrick(const Sets& sets, const Lin
   return true;
 }
 
-template <class Store, template <class> class Access>
-bool IsosurfaceSearch<Store, Access>::IsOccluded(const Sets& sets, const Ray& ray) const
+template <class Store>
+bool IsosurfaceSearch<Store>::IsOccluded(const Sets& sets, const Ray& ray) const
 {
   return this->SearchBricks(sets, ray,
     [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const auto& walk)
@@ -130,9 +129,9 @@ bool IsosurfaceSearch<Store, Access>::IsOccluded(const Sets& sets, const Ray& ra
     });
 }
 
-template <class Store, template <class> class Access>
-bool IsosurfaceSearch<Store, Access>::Attenuate(const Sets& sets,
-  const std::vector<glm::dvec3>& sheets, const Ray& ray, glm::dvec3& transmittance) const
+template <class Store>
+bool IsosurfaceSearch<Store>::Attenuate(const Sets& sets, const std::vector<glm::dvec3>& sheets,
+  const Ray& ray, glm::dvec3& transmittance) const
 {
   return this->SearchBricks(sets, ray,
     [&](auto sample, const auto& traversal, const bricks::ValueRange& range, const auto& walk)
@@ -153,9 +152,9 @@ bool IsosurfaceSearch<Store, Access>::Attenuate(const Sets& sets,
     });
 }
 
-template <class Store, template <class> class Access>
+template <class Store>
 template <class IsDone>
-bool IsosurfaceSearch<Store, Access>::SearchBricks(
+bool IsosurfaceSearch<Store>::SearchBricks(
   const Sets& sets, const Ray& ray, const IsDone& isDone) const
 {
   const IndexSpace space = sets.Field.GetIndexSpace();
@@ -182,9 +181,7 @@ bool IsosurfaceSearch<Store, Access>::SearchBricks(
             const typename Store::Pin pin = this->Blocks.Acquire(this->Self, segment, walk.GetId());
             const bricks::VoxelBrick<T> voxels(pin.GetData());
             const bricks::ValueRange range{ voxels.GetHeader().First, voxels.GetHeader().Last };
-            const Access<Store> access(this->Blocks, this->Self, segment, walk.GetId());
-            const GridTraversal<T, Access<Store>, Line> traversal(
-              line, voxels, walk.GetOrigin(), access);
+            const GridTraversal<T, Line> traversal(line, voxels, walk.GetOrigin());
             if (isDone(sample, traversal, range, walk))
             {
               return true;
