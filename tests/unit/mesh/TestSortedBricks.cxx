@@ -118,15 +118,15 @@ private:
   std::vector<Drop> Drops;
 };
 
-struct Outcome
+struct SortedOutcome
 {
   std::map<dsm::BlockId, std::vector<std::byte>> Blocks;
   std::vector<std::byte> Nodes;
 };
 
-Outcome Publish(const std::vector<Drop>& drops, int ranks)
+SortedOutcome Publish(const std::vector<Drop>& drops, int ranks)
 {
-  Outcome outcome;
+  SortedOutcome outcome;
   std::mutex guard;
   RunOnCluster(ranks,
     [&](dsm::Messenger& messenger)
@@ -173,8 +173,8 @@ Outcome Publish(const std::vector<Drop>& drops, int ranks)
 TEST(SortedBricks, HoldAnyKindOfPrimitivesOnAnyNumberOfRanks)
 {
   std::vector<Drop> drops = CreateDrops();
-  const Outcome alone = Publish(drops, 1);
-  const Outcome shared = Publish(drops, 3);
+  const SortedOutcome alone = Publish(drops, 1);
+  const SortedOutcome shared = Publish(drops, 3);
   EXPECT_GT(alone.Blocks.size(), 20u);
   EXPECT_EQ(alone.Blocks, shared.Blocks);
   EXPECT_EQ(alone.Nodes, shared.Nodes);
