@@ -28,7 +28,7 @@ MARK = re.compile(r"\*Not run by the tests: (.+)\.\*")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"^#+ +(.+)$", re.MULTILINE)
 # Lines that a page may have; 250 where it is not named.
-LENGTHS = {"README.md": 120, "docs/performance.md": 100, "docs/limits.md": 80, "docs/architecture.md": 70, "docs/lives.md": 150}
+LENGTHS = {"README.md": 120, "docs/performance.md": 100, "docs/limits.md": 80, "docs/architecture.md": 80, "docs/lives.md": 150}
 BRITISH = re.compile(
     r"colour|neighbour|behaviour|honour|favour|flavour|\bcentre|\bmetre|\bgrey|licence|catalogue|modell|labell|travell"
     r"|(organ|optim|recogn|normal|initial|synchron|real|visual|parallel|serial|minim|maxim|general|final)"

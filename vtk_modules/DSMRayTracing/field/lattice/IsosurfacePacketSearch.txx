@@ -4,10 +4,10 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
-#include "DSMRayTracing/field/lattice/BeamDescent.h"
 #include "DSMRayTracing/field/grid/HitGradient.h"
 #include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/field/grid/IsovalueLevel.h"
+#include "DSMRayTracing/field/lattice/BeamDescent.h"
 #include "DSMRayTracing/field/lattice/IsovalueTest.h"
 #include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"
