@@ -76,7 +76,9 @@ if get_ranks() == 1:  # with several, ParaView's source crashes
     without = check_slices("Slices", [5, 5, 5])
     fractal.GhostLevels = 1
     ghosts = check_slices("SlicesOfGhosts", [5, 5, 5])  # the source's values are other ones
-    check_equal(get_covered(ghosts) * 255, get_covered(without) * 255, "slices are where they are without ghost cells")
+    moved = (get_covered(ghosts) != get_covered(without)).mean()
+    # ParaView 6.1's source has bounds that are rounded otherwise with ghost cells.
+    check(moved < 0.0005, f"slices are where they are without ghost cells, but for {moved:.5f} of the pixels")
     ranges = [display.GetProperty(index).GetDomain("range").GetMaximum(0) for index in INDICES]
     check(ranges == [10] * 3, f"slices to {ranges}")
     fractal.Dimensions = 14
