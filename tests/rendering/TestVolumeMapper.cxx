@@ -3,13 +3,8 @@
 // X server, off screen.
 #include "VolumeMapperTest.h"
 
-#include "vtkDSMLightOptions.h"
-#include "vtkDSMStatistics.h"
-
 #include "vtkAutoInit.h"
 #include "vtkBoundingBox.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCamera.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkCellDataToPointData.h"
@@ -17,7 +12,6 @@
 #include "vtkExtractVOI.h"
 #include "vtkLookupTable.h"
 #include "vtkMath.h"
-#include "vtkMatrix4x4.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
@@ -26,8 +20,6 @@
 #include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRectilinearGrid.h"
-#include "vtkRenderWindow.h"
-#include "vtkTable.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTransform.h"
 #include "vtkTriangle.h"
@@ -36,12 +28,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace
@@ -457,212 +446,6 @@ TEST_F(VolumeMapper, IsosurfacesAreTrianglesForExports)
       EXPECT_NEAR(vtkMath::Norm(index), 0.3 * Edge, 0.05);
     }
   }
-}
-
-TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
-{
-  EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);
-  this->Mapper->MakesSceneOff();
-  this->Renderer->AddVolume(this->Volume);
-  EXPECT_GT(CountCovered(this->RenderDistances()), 0);
-  this->Scene = nullptr;
-  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
-  this->Scene = vtkDSMScene::ForRenderer(this->Renderer);
-  EXPECT_GT(CountCovered(this->RenderDistances()), 0);
-}
-
-TEST_F(VolumeMapper, WhatWasDeletedWhileTheSceneWasHiddenIsNotTouched)
-{
-  auto volume = vtkSmartPointer<vtkVolume>::New();
-  volume->SetMapper(this->Mapper);
-  this->Renderer->AddVolume(volume);
-  ASSERT_GT(CountCovered(this->RenderDistances()), 0);
-  this->Scene->SetHidden(true);
-  this->Renderer->RemoveVolume(volume);
-  ASSERT_EQ(volume->GetReferenceCount(), 1);
-  volume = nullptr;
-  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
-  this->Scene->SetHidden(false);
-  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
-}
-
-TEST_F(VolumeMapper, ReportsWhatItDid)
-{
-  this->Renderer->AddVolume(this->Volume);
-  this->Window->Render();
-  vtkDSMStatistics* statistics = this->Scene->GetStatistics();
-  EXPECT_GT(statistics->GetFrameSeconds(), 0.0);
-  vtkNew<vtkTable> table;
-  statistics->GetTable(table);
-  ASSERT_EQ(table->GetNumberOfRows(), 1);
-  EXPECT_EQ(table->GetValueByName(0, "Tiles").ToInt(), 13 * 13);
-  EXPECT_EQ(table->GetValueByName(0, "Threads").ToInt(), 2);
-  EXPECT_GT(table->GetValueByName(0, "BytesResident").ToDouble(), 8.0 * 33 * 33 * 33);
-  EXPECT_GT(table->GetValueByName(0, "Accesses").ToDouble(), 0.0);
-}
-
-TEST_F(VolumeMapper, CollectsSamplesUntilSomethingChanges)
-{
-  this->Renderer->AddVolume(this->Volume);
-  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3);
-  const auto countFrames = [this]
-  {
-    int frames = 0;
-    do
-    {
-      this->Window->Render();
-      ++frames;
-    } while (!this->Scene->IsRefined() && frames < 10);
-    return frames;
-  };
-  EXPECT_EQ(countFrames(), 1) << "all samples at once";
-  this->Scene->SetSamplesPerFrame(1);
-  EXPECT_EQ(countFrames(), 1) << "there is nothing to add";
-  this->Mapper->SetIsoValue(0, 0.3);
-  EXPECT_EQ(countFrames(), 3);
-  this->Renderer->GetActiveCamera()->Azimuth(3.0);
-  EXPECT_EQ(countFrames(), 3);
-  this->Mapper->GetLightOptions()->SetSamplesPerPixel(5);
-  EXPECT_EQ(countFrames(), 2) << "the three that are there count";
-  constexpr double manySeconds = 1e6;
-  this->Scene->SetSecondsPerFrame(manySeconds);
-  this->Mapper->SetIsoValue(0, 0.32);
-  EXPECT_EQ(countFrames(), 2) << "the first one at once, then as many as there is time for";
-  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 5);
-  EXPECT_EQ(this->Scene->GetNumberOfSamplesWanted(), 5);
-  this->Scene->SetSamplesPerFrame(0);
-  this->Window->SetDesiredUpdateRate(15.0);
-  this->Mapper->SetIsoValue(0, 0.35);
-  EXPECT_EQ(countFrames(), 5) << "one each while the camera moves";
-}
-
-TEST_F(VolumeMapper, KeepsTheLastPictureWhenTheWindowAborts)
-{
-  this->Renderer->AddVolume(this->Volume);
-  const std::vector<double> shown = this->RenderDistances();
-  const int covered = CountCovered(shown);
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* window, unsigned long, void*, void*)
-    { static_cast<vtkRenderWindow*>(window)->SetAbortRender(1); });
-  this->Mapper->SetIsoValue(0, 0.2);
-  // VTK asks five times a second at most.
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  const unsigned long observer = this->Window->AddObserver(vtkCommand::AbortCheckEvent, abort);
-  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
-  EXPECT_FALSE(this->Scene->IsRefined());
-  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 0);
-  this->Window->RemoveObserver(observer);
-  EXPECT_LT(CountCovered(this->RenderDistances()), covered);
-  EXPECT_TRUE(this->Scene->IsRefined());
-
-  // Samples that are added.
-  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3);
-  this->Scene->SetSamplesPerFrame(1);
-  this->Window->Render();
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  this->Window->AddObserver(vtkCommand::AbortCheckEvent, abort);
-  this->Window->Render();
-  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 1) << "those that were there";
-  EXPECT_FALSE(this->Scene->IsRefined());
-  this->Window->RemoveObserver(abort);
-  this->Scene->SetSamplesPerFrame(0);
-  this->Window->Render();
-  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 3) << "what was begun, and the rest";
-  EXPECT_TRUE(this->Scene->IsRefined());
-}
-
-TEST_F(VolumeMapper, LowersTheResolutionAtInteractiveRates)
-{
-  this->Renderer->AddVolume(this->Volume);
-  const int covered = CountCovered(this->RenderDistances());
-  const auto countTiles = [this]
-  {
-    vtkNew<vtkTable> table;
-    this->Scene->GetStatistics()->GetTable(table);
-    return table->GetValueByName(0, "Tiles").ToInt();
-  };
-  constexpr int edge = 8; // of pixels, the largest
-  this->Scene->SetInteractiveReduction(edge);
-  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
-  EXPECT_EQ(countTiles(), 13 * 13) << "a still picture is whole";
-  this->Window->SetDesiredUpdateRate(15.0);
-  EXPECT_NEAR(CountCovered(this->RenderDistances()), covered, 0.1 * covered);
-  EXPECT_EQ(countTiles(), 2 * 2);
-  this->Window->SetDesiredUpdateRate(0.001);
-  EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
-  EXPECT_EQ(countTiles(), 13 * 13);
-}
-
-TEST_F(VolumeMapper, SharesTheLightOfOcclusionAtInteractiveRates)
-{
-  this->Renderer->AddVolume(this->Volume);
-  vtkNew<vtkPlane> middle; // lays the hollow open, of which a single ray sees all or nothing
-  middle->SetOrigin(this->Volume->GetCenter());
-  middle->SetNormal(this->Renderer->GetActiveCamera()->GetDirectionOfProjection());
-  this->Mapper->AddClippingPlane(middle);
-  this->Mapper->GetLightOptions()->SetAmbientOcclusionSamples(1);
-  const auto grab = [this](double rate)
-  {
-    this->Window->SetDesiredUpdateRate(rate);
-    this->Window->Render();
-    vtkNew<vtkUnsignedCharArray> pixels;
-    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
-    return std::vector<unsigned char>(pixels->Begin(), pixels->End());
-  };
-  const std::vector<unsigned char> still = grab(0.001);
-  const std::vector<unsigned char> moving = grab(15.0);
-  const auto sumSteps = [](const std::vector<unsigned char>& pixels)
-  {
-    double sum = 0.0;
-    for (std::size_t value = 3; value < pixels.size(); ++value)
-    {
-      sum += std::abs(pixels[value] - pixels[value - 3]);
-    }
-    return sum;
-  };
-  EXPECT_LT(sumSteps(moving), 0.5 * sumSteps(still)) << "no black dots";
-  EXPECT_EQ(grab(0.001), still) << "a picture at rest is the same on any number of ranks";
-}
-
-TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)
-{
-  struct Watch
-  {
-    vtkDSMScene* Scene;
-    vtkDSMVolumeMapper* Mapper;
-    std::vector<double> Parts;
-    bool Aborts;
-  } watch{ this->Scene, this->Mapper, {}, true };
-  vtkNew<vtkCallbackCommand> progress;
-  progress->SetClientData(&watch);
-  progress->SetCallback(
-    [](vtkObject*, unsigned long, void* data, void*)
-    {
-      auto* self = static_cast<Watch*>(data);
-      // VTK executes the mapper once more when it draws.
-      if (self->Scene->IsTracing())
-      {
-        self->Parts.push_back(self->Mapper->GetProgress());
-        self->Mapper->SetAbortExecute(self->Aborts ? 1 : 0);
-      }
-    });
-  this->Mapper->AddObserver(vtkCommand::ProgressEvent, progress);
-  vtkNew<vtkTest::ErrorObserver> errors;
-  this->Mapper->AddObserver(vtkCommand::ErrorEvent, errors);
-  this->Renderer->AddVolume(this->Volume);
-
-  EXPECT_EQ(CountCovered(this->RenderDistances()), 0);
-  EXPECT_NE(errors->GetErrorMessage().find("aborted"), std::string::npos);
-  EXPECT_EQ(watch.Parts.size(), 1u);
-
-  watch = { this->Scene, this->Mapper, {}, false };
-  errors->Clear();
-  this->Mapper->SetInputData(MakeBall());
-  EXPECT_GT(CountCovered(this->RenderDistances()), 1000);
-  EXPECT_FALSE(errors->GetError());
-  EXPECT_GT(watch.Parts.size(), 2u);
-  EXPECT_TRUE(std::is_sorted(watch.Parts.begin(), watch.Parts.end()));
-  EXPECT_EQ(watch.Parts.back(), 1.0);
 }
 
 TEST_F(VolumeMapper, NamesAMissingArrayOnce)
