@@ -128,6 +128,14 @@ private:
   std::unique_ptr<std::byte[]> Reserve; ///< untouched
 };
 
+/// Contributions of the ranks; empty if any rank has failed.
+struct Messenger::Gathered
+{
+  Status Outcome;
+  bool IsStepOver = false;
+  std::vector<std::vector<std::byte>> Parts;
+};
+
 } // namespace dsm
 
 #endif
