@@ -5,6 +5,7 @@
 
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVVersion.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -16,6 +17,13 @@ namespace
 /// Initial position of a single isovalue, as a fraction of the range: a user could enter an even
 /// fraction.
 constexpr double Beginning = 0.5 + 0.01 / 3.14159265358979;
+
+#if PARAVIEW_VERSION_NUMBER >= PARAVIEW_VERSION_CHECK(6, 0, 0)
+/// A slider of ParaView 6 divides by the distance from a new least value to 1 before it knows the largest one. Where Qt
+/// checks that the quotient is an integer, as Debian's does, the application ends. Such arrays are common: the lengths
+/// of normals are 1.
+constexpr double SafeDistance = 1e-3;
+#endif
 }
 
 vtkStandardNewMacro(vtkSMDSMIsovalueDomain);
@@ -70,6 +78,14 @@ void vtkSMDSMIsovalueDomain::Update(vtkSMProperty* property)
   {
     this->SetEntries({ vtkEntry(this->Suggested[0], this->Suggested[1]) });
   }
+#if PARAVIEW_VERSION_NUMBER >= PARAVIEW_VERSION_CHECK(6, 0, 0)
+  const double first = this->GetMinimum(0, isKnown[0]);
+  const double last = this->GetMaximum(0, isKnown[1]);
+  if (isKnown[0] && isKnown[1] && std::abs(first - 1.0) < SafeDistance)
+  {
+    this->SetEntries({ vtkEntry(1.0 - SafeDistance, last) });
+  }
+#endif
 }
 
 void vtkSMDSMIsovalueDomain::TakeSuggestedRange()
