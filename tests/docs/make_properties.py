@@ -29,7 +29,7 @@ FROM_DATA = {"mid": "center of the data", "data_bounds": "bounds of the data",
 
 
 def read_tables():
-    """Of each table its properties: name and definition."""
+    """Returns the properties of each table, by name, with their definitions."""
     tables = {table: {} for table in TABLES}
     for path in DEFINITIONS:
         for proxy in ElementTree.parse(path).iterfind("ProxyGroup/*"):

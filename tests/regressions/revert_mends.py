@@ -43,7 +43,7 @@ MENDS = (
          "this->TakeFromEnd(this->Own.size() / 2)", "this->TakeFromEnd(0)", ["unit_frame"],
          "unit.frame", "*Scheduling*"),
     Mend("lights that differ between ranks were not noticed", "vtk_modules/DSMRayTracing/frame/SceneDigest.cxx",
-         "    Add(digest, light);", "    digest.Add(light.Type);", ["unit_frame"], "unit.frame",
+         "    Add(digest, light);", "    digest.Add(light.Kind.index());", ["unit_frame"], "unit.frame",
          "*Digest*"),
     Mend("triangles whose corners are nowhere got a place in the order", "vtk_modules/DSMBricks/sorted/SortedCells.cxx",
          "canBeHit ? code : NoCode", "code",

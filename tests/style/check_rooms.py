@@ -96,7 +96,7 @@ def find_arrows_up(root):
         for path in sorted((root / room).glob("*/*")):
             name = path.relative_to(root).as_posix()
             if path.parent.name not in folders:
-                yield f"{name}: {path.parent.name} is no folder of {room}"
+                yield f"{name}: the room {room} does not list the folder {path.parent.name}"
                 continue
             for used in re.findall(rf'"{room.removeprefix("vtk_modules/")}/(\w+)/', path.read_text()):
                 if used not in folders[: folders.index(path.parent.name) + 1]:

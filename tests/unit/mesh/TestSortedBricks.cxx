@@ -21,7 +21,7 @@
 namespace
 {
 
-/// A primitive that is no triangle: a place and a value. Its record is the same.
+/// A kind of primitive besides triangles: a place and a value. The record holds both.
 struct Drop
 {
   float Place[3];

@@ -31,7 +31,7 @@ LightSample PositionalLight::Sample(
   const double attenuation = 1.0 /
     (this->Attenuation.x + this->Attenuation.y * distance +
       this->Attenuation.z * distance * distance);
-  // At the light itself there is no direction; its own will do.
+  // A point at the light has no direction to it. The light's own direction stands in.
   return { distance > 0.0 ? way / distance : direction, distance, glm::dvec3(attenuation) };
 }
 
