@@ -42,6 +42,9 @@ struct MediumLook
   double Anisotropy = 0.0;
   /// Null: extinction does not depend on the gradient.
   std::shared_ptr<const GradientOpacity> Gradients;
+  /// True: the value of a place is that of the nearest sample, so that samples are boxes. False: values are
+  /// interpolated.
+  bool Nearest = false;
 
   bool IsLit() const { return this->Shade || this->Scattering > 0.0; }
 };
