@@ -242,16 +242,17 @@ std::vector<double> SumTileSeconds(dsm::Messenger& messenger, const std::vector<
 rt::LatticeMedium CreateMedium(const rt::LatticeField& field, const std::vector<double>& medium)
 {
   const double cell = field.GetFinestLength();
-  std::vector<glm::dvec4> samples;
-  for (int bin = 0; bin <= rt::TransferFunction::Bins; ++bin)
+  const double first = medium[0];
+  const double last = medium[1];
+  const auto look = [&](double value)
   {
-    const double part = static_cast<double>(bin) / rt::TransferFunction::Bins;
+    const double part = (value - first) / (last - first);
     const double opacity = std::min(part * medium[2], 0.9999);
-    samples.emplace_back(part, 0.3, 1.0 - part, -std::log1p(-opacity) / cell);
-  }
+    return glm::dvec4(part, 0.3, 1.0 - part, -std::log1p(-opacity) / cell);
+  };
   rt::LatticeMedium result;
   result.Field = field;
-  result.Function = std::make_shared<rt::TransferFunction>(medium[0], medium[1], samples, cell);
+  result.Function = rt::TransferFunction::Create(first, last, look, {}, 0.0, cell);
   return result;
 }
 

@@ -41,10 +41,10 @@ const Nodes Fog = { { -3.0, { 0.1, 0.3, 0.9, 0.0 } }, { 0.0, { 0.3, 0.8, 0.4, 1.
 const Nodes Peak = { { -3.0, { 0.9, 0.5, 0.1, 0.0 } }, { 0.0, { 0.9, 0.5, 0.1, 0.0 } },
   { 3.0 / 256, { 0.9, 0.5, 0.1, 120.0 } }, { 6.0 / 256, { 0.9, 0.5, 0.1, 0.0 } },
   { 3.0, { 0.9, 0.5, 0.1, 0.0 } } };
-/// A quarter of an even bin, in a range of which values that lie near 0 fill a few bins.
+/// A 16384th of a range of which values that lie near 0 fill a small part.
 Nodes GetNarrowPeak(double range)
 {
-  const double width = 0.25 * 2.0 * range / rt::TransferFunction::Bins;
+  const double width = 2.0 * range / 16384;
   const glm::dvec4 color(0.9, 0.5, 0.1, 0.0);
   return { { -range, color }, { 0.1, color },
     { 0.1 + 0.5 * width, color + glm::dvec4(0.0, 0.0, 0.0, 3.0 / width) }, { 0.1 + width, color },

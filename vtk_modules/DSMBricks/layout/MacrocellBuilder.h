@@ -2,6 +2,7 @@
 #ifndef bricks_MacrocellBuilder_h
 #define bricks_MacrocellBuilder_h
 
+#include "DSMBricks/layout/BrickBends.h"
 #include "DSMBricks/layout/BrickLattice.h"
 #include "DSMBricks/layout/LaneRanges.h"
 #include "DSMBricks/layout/VoxelBrick.h"
@@ -135,7 +136,7 @@ private:
   std::array<T, Points> Check;
 };
 
-/// Derives, out of the samples and the mask of a brick, its macrocells and its own range.
+/// Derives, out of the samples and the mask of a brick, its macrocells, its own range and its bends.
 template <class T>
 void BuildMacrocells(std::byte* block)
 {
@@ -176,6 +177,7 @@ void BuildMacrocells(std::byte* block)
       }
     }
   }
+  BuildBends<T>(block);
 }
 
 } // namespace bricks

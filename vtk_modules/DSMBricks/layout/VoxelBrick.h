@@ -45,6 +45,12 @@ public:
       this->Block + VoxelBrickHeader::MacrocellOffset);
   }
 
+  /// Of macrocells, then of parts; see BrickBends.h.
+  const std::uint8_t* GetBends() const
+  {
+    return reinterpret_cast<const std::uint8_t*>(this->Block + this->Header.BendOffset);
+  }
+
   const T* GetSamples() const { return this->Samples; }
   /// Samples from one point to the next on y, and on z; on x it is 1.
   int GetRow() const { return this->Row; }
@@ -52,14 +58,21 @@ public:
   int GetOffset(int x, int y, int z) const { return x + y * this->Row + z * this->Slice; }
   T GetSample(int x, int y, int z) const { return this->Samples[this->GetOffset(x, y, z)]; }
 
+  /// Null: all cells may hold data.
+  const std::uint8_t* GetMask() const
+  {
+    return this->Header.MaskOffset == 0
+      ? nullptr
+      : reinterpret_cast<const std::uint8_t*>(this->Block + this->Header.MaskOffset);
+  }
   /// Returns whether the mask allows the cell to hold data; its corners may still not be finite.
   bool IsCovered(int x, int y, int z) const
   {
-    if (this->Header.MaskOffset == 0)
+    const std::uint8_t* const mask = this->GetMask();
+    if (!mask)
     {
       return true;
     }
-    const auto* mask = reinterpret_cast<const std::uint8_t*>(this->Block + this->Header.MaskOffset);
     const int cell = x + this->GetCells(0) * (y + this->GetCells(1) * z);
     return (mask[cell >> 3] >> (cell & 7) & 1) != 0;
   }

@@ -28,12 +28,13 @@ std::uint32_t GetMaskBits(D tag, hn::Mask<D> mask)
   return bytes[0] | bytes[1] << 8;
 }
 
-/// The inverse, of the lowest bits, for at most 8 lanes.
+/// The inverse, of the lowest bits, for at most 16 lanes.
 template <class D>
 hn::Mask<D> GetBitMask(D tag, std::uint64_t bits)
 {
-  static_assert(hn::MaxLanes(D()) <= 8, "one byte of bits");
-  const std::uint8_t bytes[8] = { static_cast<std::uint8_t>(bits) };
+  static_assert(hn::MaxLanes(D()) <= 16, "two bytes of bits");
+  const std::uint8_t bytes[8] = { static_cast<std::uint8_t>(bits),
+    static_cast<std::uint8_t>(bits >> 8) };
   return hn::LoadMaskBits(tag, bytes);
 }
 

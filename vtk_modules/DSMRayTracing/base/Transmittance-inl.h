@@ -20,22 +20,21 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// exp(-depth) of numbers that are not negative, to 1e-13; the same bits for vectors of any width.
+/// exp(-depth) of floats that are not negative, to 2e-7 of 1; the same bits for vectors of any width.
 template <class Vector>
 HWY_INLINE Vector GetTransmittance(Vector depth)
 {
   const hn::DFromV<Vector> tag;
   const hn::RebindToUnsigned<decltype(tag)> bits;
-  const Vector bounded = hn::Min(depth, hn::Set(tag, 700.0));
+  const Vector bounded = hn::Min(depth, hn::Set(tag, 80.0f));
   // The power of two, and what is left: between -ln(2) / 2 and ln(2) / 2.
-  const Vector large = hn::Set(tag, 6755399441055744.0);
-  const Vector raised = hn::Sub(large, hn::Mul(bounded, hn::Set(tag, 1.4426950408889634)));
+  const Vector large = hn::Set(tag, 12582912.0f);
+  const Vector raised = hn::Sub(large, hn::Mul(bounded, hn::Set(tag, 1.44269504f)));
   const Vector power = hn::Sub(raised, large);
-  const Vector high = hn::Mul(power, hn::Set(tag, 0.693147180369123816490));
-  const Vector low = hn::Mul(power, hn::Set(tag, 1.90821492927058770002e-10));
+  const Vector high = hn::Mul(power, hn::Set(tag, 0.693145752f));
+  const Vector low = hn::Mul(power, hn::Set(tag, 1.42860677e-6f));
   const Vector rest = hn::Sub(hn::Sub(hn::Neg(bounded), high), low);
-  constexpr double factors[] = { 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
-    1.0 / 40320, 1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0 };
+  constexpr float factors[] = { 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f };
   Vector sum = hn::Set(tag, factors[0]);
   for (std::size_t order = 1; order < std::size(factors); ++order)
   {
@@ -43,8 +42,23 @@ HWY_INLINE Vector GetTransmittance(Vector depth)
   }
   // The whole number stands in the lowest bits of `raised`.
   const auto exponent =
-    hn::ShiftLeft<52>(hn::Add(hn::BitCast(bits, raised), hn::Set(bits, std::uint64_t{ 1023 })));
+    hn::ShiftLeft<23>(hn::Add(hn::BitCast(bits, raised), hn::Set(bits, std::uint32_t{ 127 })));
   return hn::Mul(sum, hn::BitCast(tag, exponent));
+}
+
+/// (1 - exp(-depth)) / depth, the share of its emission that gets out of an even piece; `passed`: exp(-depth).
+template <class Vector>
+HWY_INLINE Vector GetSeenShare(Vector depth, Vector passed)
+{
+  const hn::DFromV<Vector> tag;
+  constexpr float factors[] = { 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f };
+  Vector thin = hn::Set(tag, factors[0]);
+  for (std::size_t order = 1; order < std::size(factors); ++order)
+  {
+    thin = hn::Add(hn::Mul(thin, depth), hn::Set(tag, factors[order]));
+  }
+  const Vector thick = hn::Div(hn::Sub(hn::Set(tag, 1.0f), passed), depth);
+  return hn::IfThenElse(hn::Lt(depth, hn::Set(tag, 0.125f)), thin, thick);
 }
 
 } // namespace HWY_NAMESPACE

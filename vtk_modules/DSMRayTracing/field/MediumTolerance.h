@@ -5,11 +5,16 @@
 namespace rt
 {
 
-/// How finely a way through a medium is cut into pieces, in each of which values are taken for linear.
+/// How finely a way through a medium is cut into pieces, in each of which values are taken for linear. Errors count as
+/// far as the pixel sees them: by the transmittance before the way.
 struct MediumTolerance
 {
   /// Error of the optical depth of a way.
   static constexpr double Depth = 1.0 / 2048.0;
+  /// Bound of the error of the optical depth of a way through several cells in one step, in which values are taken for
+  /// quadratic. The bound is that of the worst ray through the worst of the cells: what pixels are off by is a
+  /// hundredth of it.
+  static constexpr double Joint = 1.0 / 128.0;
   /// Error of the color of a piece: the front of a piece hides part of its back.
   static constexpr double Color = 1.0 / 1024.0;
   /// Pieces that are described for a unit of optical depth.

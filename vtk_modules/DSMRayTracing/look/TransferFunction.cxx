@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -16,8 +15,6 @@ namespace rt
 
 namespace
 {
-
-constexpr int BinsOfGroup = 16;
 
 /// Returns the larger of each number.
 TransferFunction::Behavior GetLarger(
@@ -45,7 +42,7 @@ glm::dvec4 ToEmission(const glm::dvec4& look)
   return glm::dvec4(glm::dvec3(look) * look.w, look.w);
 }
 
-/// From one look to the next. If one end of a bin is transparent, the bin has the color of the other end.
+/// From one look to the next. If one end of a part is transparent, the part has the color of the other end.
 double GetTinge(const glm::dvec4& before, const glm::dvec4& after)
 {
   const glm::dvec3 change = glm::abs(glm::dvec3(after) - glm::dvec3(before));
@@ -57,104 +54,207 @@ Lanes ToLanes(const glm::dvec4& numbers)
   return { numbers.x, numbers.y, numbers.z, numbers.w };
 }
 
+glm::dvec4 ToVector(const Lanes& lanes)
+{
+  return { lanes[0], lanes[1], lanes[2], lanes[3] };
+}
+
+/// The value where the narrowest part begins.
+double FindOrigin(const std::vector<FunctionSample>& samples)
+{
+  double origin = samples.front().Value;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t sample = 1; sample < samples.size(); ++sample)
+  {
+    const double width = samples[sample].Value - samples[sample - 1].Value;
+    if (width > 0.0 && width < least)
+    {
+      least = width;
+      origin = samples[sample - 1].Value;
+    }
+  }
+  return origin;
+}
+
+/// As floats have it.
+double Round(double place)
+{
+  return static_cast<double>(static_cast<float>(place));
+}
+
+std::vector<FunctionSample> ToSamples(
+  double first, double last, const std::vector<glm::dvec4>& looks)
+{
+  std::vector<FunctionSample> samples;
+  for (std::size_t number = 0; number < looks.size(); ++number)
+  {
+    const double part = static_cast<double>(number) / static_cast<double>(looks.size() - 1);
+    samples.push_back({ first + part * (last - first), looks[number] });
+  }
+  samples.back().Value = last;
+  return samples;
+}
+
 } // namespace
 
-TransferFunction::TransferFunction(double first, double last,
-  const std::vector<glm::dvec4>& samples, double cellLength,
-  const std::vector<FunctionSample>& between)
-  : First(first)
-  , Scale(static_cast<double>(samples.size() - 1) / (last - first))
-  , Last(static_cast<double>(samples.size() - 1))
-  , AllBins(static_cast<int>(samples.size()) + 1)
-  , Table(samples.size() + 1)
-  , Divisions(samples.size() + 1, 0)
-  , Divided(1)
-  , SeenBefore(samples.size() + 2, 0)
+TransferFunction::TransferFunction(const std::vector<FunctionSample>& samples, double cellLength)
+  : Origin(FindOrigin(samples))
+  , Scale(Bins / (samples.back().Value - samples.front().Value))
+  , Begin(Round(this->GetPlace(samples.front().Value)))
 {
   bricks::ByteHash hash;
-  hash.Add(&first, sizeof(first));
-  hash.Add(&last, sizeof(last));
-  hash.Add(samples.data(), samples.size() * sizeof(glm::dvec4));
   hash.Add(&cellLength, sizeof(cellLength));
-  for (const FunctionSample& sample : between)
+  for (const FunctionSample& sample : samples)
   {
     hash.Add(&sample.Value, sizeof(sample.Value));
     hash.Add(&sample.Look, sizeof(sample.Look));
   }
   this->Digest = hash.Get();
 
-  const auto getSample = [&](int sample)
-  { return samples[static_cast<std::size_t>(std::clamp(sample, 0, this->AllBins - 2))]; };
-  const auto emit = [&](int sample) { return ToEmission(getSample(sample)); };
-  // The bin below the range ends where the integral is 0.
-  glm::dvec4 integral = -emit(0);
-  glm::dvec4 before = GetSeen(emit(0), cellLength);
-  const std::size_t groupCount = samples.size() / BinsOfGroup + 1;
-  std::vector<Behavior> groups(groupCount);
-  auto inner = between.begin();
-  for (int bin = 0; bin < this->AllBins; ++bin)
+  // The part below the range ends where the integral is 0.
+  const Lanes start = ToLanes(ToEmission(samples.front().Look));
+  this->Parts.push_back(
+    { this->Begin, this->Begin, Lanes(0.0), start, Lanes(0.0), start[3], 0.0, { start[3] } });
+  for (std::size_t sample = 1; sample < samples.size(); ++sample)
   {
-    const glm::dvec4 begin = emit(bin - 1);
-    const glm::dvec4 growth = emit(bin) - begin;
-    const glm::dvec4 slope = begin + 0.5 * growth;
-    Bin& own = this->Table[static_cast<std::size_t>(bin)];
-    Behavior& group = groups[static_cast<std::size_t>(bin / BinsOfGroup)];
-    own = { ToLanes(integral), ToLanes(begin), ToLanes(growth) };
-    std::vector<Corner> corners{ { bin - 1.0, getSample(bin - 1) } };
-    for (; inner != between.end(); ++inner)
-    {
-      const double place = (inner->Value - first) * this->Scale;
-      if (place >= bin)
-      {
-        break;
-      }
-      if (place > corners.back().Place)
-      {
-        corners.push_back({ place, inner->Look });
-      }
-    }
-    Whole whole{ slope, 0.0, GetTinge(getSample(bin - 1), getSample(bin)) };
-    if (corners.size() > 1)
-    {
-      corners.push_back({ static_cast<double>(bin), getSample(bin) });
-      whole = this->Divide(bin, corners, integral, cellLength);
-    }
-    // The first bin of a group changes from the last one of the group before.
-    const glm::dvec4 seen = GetSeen(whole.Slope, cellLength);
-    group.Change = std::max({ group.Change, whole.Change, GetLargest(glm::abs(seen - before)) });
-    group.Extinction = std::max(group.Extinction, whole.Slope.w);
-    group.Tinge = std::max(group.Tinge, whole.Tinge);
-    this->SeenBefore[static_cast<std::size_t>(bin) + 1] =
-      this->SeenBefore[static_cast<std::size_t>(bin)] + (whole.Slope.w > 0.0 ? 1 : 0);
-    integral += whole.Slope;
-    before = seen;
+    this->AddPart(samples[sample - 1], samples[sample], cellLength);
   }
-  this->Largest.push_back(groups);
-  for (std::size_t width = 1; 2 * width <= groupCount; width *= 2)
+  const Lanes end = ToLanes(ToEmission(samples.back().Look));
+  const Part& last = this->Parts.back();
+  const double width = last.End - last.Begin;
+  this->Parts.push_back({ last.End, std::numeric_limits<double>::infinity(),
+    last.Integral + (last.Look + Lanes(0.5 * width) * last.Growth) * Lanes(width), end, Lanes(0.0),
+    end[3], 0.0, { end[3] } });
+  this->SeenBefore.push_back(0);
+  for (const Part& part : this->Parts)
+  {
+    this->SeenBefore.push_back(this->SeenBefore.back() + (part.Steepness.Extinction > 0.0 ? 1 : 0));
+  }
+  this->SetBins();
+  this->SetTable();
+}
+
+TransferFunction::TransferFunction(
+  double first, double last, const std::vector<glm::dvec4>& samples)
+  : TransferFunction(ToSamples(first, last, samples))
+{
+}
+
+void TransferFunction::AddPart(
+  const FunctionSample& begin, const FunctionSample& end, double cellLength)
+{
+  const Part& before = this->Parts.back();
+  const double first = Round(this->GetPlace(begin.Value));
+  const double last = Round(this->GetPlace(end.Value));
+  if (!(first < last)) // a jump
+  {
+    return;
+  }
+  const double width = last - first;
+  const glm::dvec4 one = ToEmission(begin.Look);
+  const glm::dvec4 other = ToEmission(end.Look);
+  const double beforeWidth = before.End - before.Begin;
+  const Lanes integral = before.Integral +
+    (before.Look + Lanes(0.5 * beforeWidth) * before.Growth) * Lanes(beforeWidth);
+  const double change = GetLargest(glm::abs(GetSeen(other, cellLength) - GetSeen(one, cellLength)));
+  const glm::dvec4 beforeEnd = ToVector(before.Look + Lanes(beforeWidth) * before.Growth);
+  const double jump =
+    GetLargest(glm::abs(GetSeen(one, cellLength) - GetSeen(beforeEnd, cellLength)));
+  this->Brightest = std::max({ this->Brightest, GetLargest(glm::dvec4(glm::dvec3(one), 0.0)),
+    GetLargest(glm::dvec4(glm::dvec3(other), 0.0)) });
+  this->Parts.push_back({ first, last, integral, ToLanes(one), ToLanes((other - one) / width),
+    end.Look.w, jump,
+    { std::max(one.w, other.w), change / width, GetTinge(begin.Look, end.Look) / width } });
+}
+
+void TransferFunction::SetBins()
+{
+  std::vector<Behavior> bins(Bins + 2);
+  bins.front() = this->Parts.front().Steepness;
+  bins.back() = this->Parts.back().Steepness;
+  for (std::size_t number = 1; number + 1 < this->Parts.size(); ++number)
+  {
+    const Part& part = this->Parts[number];
+    const int first = std::clamp(this->GetBin(part.Begin), 1, Bins);
+    bins[static_cast<std::size_t>(first)].Change += part.Jump;
+    for (int bin = first; bin <= Bins && this->Begin + bin - 1 < part.End; ++bin)
+    {
+      const double lower = std::max(part.Begin, this->Begin + bin - 1);
+      const double upper = std::min(part.End, this->Begin + bin);
+      const auto getExtinction = [&part](double place)
+      { return part.Look[3] + part.Growth[3] * (place - part.Begin); };
+      Behavior& own = bins[static_cast<std::size_t>(bin)];
+      own.Extinction = std::max({ own.Extinction, getExtinction(lower), getExtinction(upper) });
+      own.Change += part.Steepness.Change * (upper - lower);
+      own.Tinge += part.Steepness.Tinge * (upper - lower);
+    }
+  }
+  this->Largest.push_back(bins);
+  for (std::size_t width = 1; 2 * width <= bins.size(); width *= 2)
   {
     const std::vector<Behavior>& narrow = this->Largest.back();
-    std::vector<Behavior> next(groupCount - 2 * width + 1);
-    for (std::size_t group = 0; group < next.size(); ++group)
+    std::vector<Behavior> next(bins.size() - 2 * width + 1);
+    for (std::size_t bin = 0; bin < next.size(); ++bin)
     {
-      next[group] = GetLarger(narrow[group], narrow[group + width]);
+      next[bin] = GetLarger(narrow[bin], narrow[bin + width]);
     }
     this->Largest.push_back(std::move(next));
   }
+}
+
+void TransferFunction::SetTable()
+{
+  for (const Part& part : this->Parts)
+  {
+    this->Floats.Begin.push_back(static_cast<float>(part.Begin));
+    for (const Lanes& row : { part.Look, part.Growth })
+    {
+      for (int channel = 0; channel < 4; ++channel)
+      {
+        this->Floats.Rows.push_back(static_cast<float>(row[channel]));
+      }
+    }
+  }
+  this->Floats.Begin.front() = -std::numeric_limits<float>::infinity();
+  this->Floats.First = static_cast<float>(this->Begin);
+  // Whatever rounding does to the bin of a place.
+  constexpr double slack = 1e-3;
+  const auto find = [this](double place)
+  {
+    const auto isBehind = [](double one, const Part& part) { return one < part.Begin; };
+    const auto next = std::upper_bound(this->Parts.begin(), this->Parts.end(), place, isBehind);
+    return std::max<std::ptrdiff_t>(next - this->Parts.begin() - 1, 0);
+  };
+  std::ptrdiff_t most = 0;
+  for (int bin = 0; bin < Bins; ++bin)
+  {
+    const std::ptrdiff_t first = find(this->Begin + bin - slack);
+    this->Floats.Index.push_back(static_cast<std::int32_t>(first));
+    most = std::max(most, find(this->Begin + bin + 1 + slack) - first);
+  }
+  this->Floats.Steps = 0;
+  for (; most >> this->Floats.Steps != 0; ++this->Floats.Steps)
+  {
+  }
+  this->Floats.Begin.insert(this->Floats.Begin.end(), std::size_t{ 1 } << this->Floats.Steps,
+    std::numeric_limits<float>::infinity());
 }
 
 std::shared_ptr<const TransferFunction> TransferFunction::Create(double first, double last,
   const std::function<glm::dvec4(double)>& look, const std::vector<double>& nodes, double least,
   double cellLength)
 {
-  constexpr double tolerance = 1.0 / 512.0;
-  std::vector<FunctionSample> even;
+  constexpr double tolerance = 1.0 / 2048.0;
+  constexpr int evenSamples = 256; // find curves whose middles are on the lines between their ends
+  std::vector<double> places = nodes;
   glm::dvec4 scale(0.0, 0.0, 0.0, 1.0);
-  for (int sample = 0; sample <= Bins; ++sample)
+  for (int sample = 0; sample <= evenSamples; ++sample)
   {
-    const double value =
-      sample == Bins ? last : first + (last - first) * (static_cast<double>(sample) / Bins);
-    even.push_back({ value, look(value) });
-    scale = glm::max(scale, glm::dvec4(glm::dvec3(even.back().Look), 1.0));
+    const double value = sample == evenSamples
+      ? last
+      : first + (last - first) * (static_cast<double>(sample) / evenSamples);
+    places.push_back(value);
+    scale = glm::max(scale, glm::dvec4(glm::dvec3(look(value)), 1.0));
   }
   const auto getDeviation =
     [&](const FunctionSample& begin, const FunctionSample& end, const FunctionSample& between)
@@ -165,107 +265,83 @@ std::shared_ptr<const TransferFunction> TransferFunction::Create(double first, d
     const double most = tolerance * std::max(between.Look.w, line.w) + least;
     return most > 0.0 ? GetLargest(difference / scale) / most : 0.0;
   };
-  const FunctionSamples samples(look, nodes, getDeviation);
-  std::vector<glm::dvec4> looks{ even.front().Look };
-  std::vector<FunctionSample> between;
-  for (std::size_t sample = 1; sample < even.size(); ++sample)
+  const FunctionSamples samples(look, places, getDeviation);
+  const FunctionSample begin = samples.Get(first);
+  const FunctionSample end = samples.Get(last);
+  std::vector<FunctionSample> all{ begin };
+  const std::vector<FunctionSample> between = samples.FindBetween(begin, end);
+  all.insert(all.end(), between.begin(), between.end());
+  all.push_back(end);
+  return std::make_shared<const TransferFunction>(all, cellLength);
+}
+
+std::size_t TransferFunction::FindPart(double place) const
+{
+  if (!(place >= this->Begin))
   {
-    looks.push_back(even[sample].Look);
-    const std::vector<FunctionSample> some = samples.FindBetween(even[sample - 1], even[sample]);
-    between.insert(between.end(), some.begin(), some.end());
+    return 0;
   }
-  return std::make_shared<const TransferFunction>(first, last, looks, cellLength, between);
-}
-
-TransferFunction::Whole TransferFunction::Divide(
-  int number, const std::vector<Corner>& corners, const glm::dvec4& integral, double cellLength)
-{
-  this->Divisions[static_cast<std::size_t>(number)] =
-    static_cast<std::uint32_t>(this->Divided.size());
-  const std::size_t first = this->Places.size();
-  Whole whole;
-  for (std::size_t corner = 1; corner < corners.size(); ++corner)
+  const auto bin = static_cast<std::size_t>(std::min<double>(place - this->Begin, Bins - 1));
+  auto part = static_cast<std::size_t>(this->Floats.Index[bin]);
+  for (int step = this->Floats.Steps; step-- > 0;)
   {
-    const Corner& begin = corners[corner - 1];
-    const Corner& end = corners[corner];
-    const double width = end.Place - begin.Place;
-    const glm::dvec4 one = ToEmission(begin.Look);
-    const glm::dvec4 other = ToEmission(end.Look);
-    const glm::dvec4 mean = 0.5 * (one + other);
-    const double change =
-      GetLargest(glm::abs(GetSeen(other, cellLength) - GetSeen(one, cellLength)));
-    const double tinge = GetTinge(begin.Look, end.Look);
-    this->Places.push_back(begin.Place);
-    this->Table.push_back(
-      { ToLanes(integral + whole.Slope), ToLanes(one), ToLanes((other - one) / width) });
-    this->Parts.push_back({ mean.w, change / width, tinge / width });
-    whole.Slope += width * mean;
-    whole.Change += change;
-    whole.Tinge += tinge;
+    const std::size_t next = part + (std::size_t{ 1 } << step);
+    part = static_cast<double>(this->Floats.Begin[next]) <= place ? next : part;
   }
-  this->Divided.push_back({ first, this->Places.size() });
-  this->Table[static_cast<std::size_t>(number)].Begin =
-    Lanes(std::numeric_limits<double>::quiet_NaN());
-  return whole;
+  return part;
 }
 
-Lanes TransferFunction::IntegratePart(int number, double place, Lanes& slope) const
+bool TransferFunction::IsPlaceSeen(double begin, double end) const
 {
-  const Division& division = this->Divided[this->Divisions[static_cast<std::size_t>(number)]];
-  const std::size_t part = this->FindPart(division, place);
-  return Integrate(
-    this->Table[static_cast<std::size_t>(this->AllBins) + part], place - this->Places[part], slope);
-}
-
-std::size_t TransferFunction::FindPart(const Division& division, double place) const
-{
-  // The first part begins where the bin does.
-  const auto begin = this->Places.begin() + static_cast<std::ptrdiff_t>(division.First) + 1;
-  const auto end = this->Places.begin() + static_cast<std::ptrdiff_t>(division.Last);
-  return static_cast<std::size_t>(std::upper_bound(begin, end, place) - this->Places.begin() - 1);
+  const std::size_t first = this->FindPart(begin);
+  const std::size_t last = this->FindPart(end);
+  const auto isSeen = [&](std::size_t number, double place)
+  {
+    const Part& part = this->Parts[number];
+    return part.Look[3] + part.Growth[3] * (place - part.Begin) > 0.0;
+  };
+  if (isSeen(first, begin) || isSeen(last, end))
+  {
+    return true;
+  }
+  // What is between two places of a part that are not seen is not seen either.
+  return first < last &&
+    (this->Parts[first].LastExtinction > 0.0 || this->Parts[last].Look[3] > 0.0 ||
+      this->SeenBefore[last] > this->SeenBefore[first + 1]);
 }
 
 TransferFunction::Behavior TransferFunction::FindBinBehavior(int first, int last) const
 {
-  if (!this->AnyIsSeen(first, last))
-  {
-    return {};
-  }
-  const int firstGroup = first / BinsOfGroup;
-  const int count = last / BinsOfGroup - firstGroup + 1;
+  const int count = last - first + 1;
   const int level = 31 - __builtin_clz(static_cast<unsigned>(count));
-  const std::vector<Behavior>& groups = this->Largest[static_cast<std::size_t>(level)];
-  return GetLarger(groups[static_cast<std::size_t>(firstGroup)],
-    groups[static_cast<std::size_t>(firstGroup + count - (1 << level))]);
+  const std::vector<Behavior>& bins = this->Largest[static_cast<std::size_t>(level)];
+  return GetLarger(bins[static_cast<std::size_t>(first)],
+    bins[static_cast<std::size_t>(first + count - (1 << level))]);
 }
 
 TransferFunction::Behavior TransferFunction::FindBehavior(double begin, double end) const
 {
-  const int first = this->GetNumber(begin);
-  const int last = this->GetNumber(end);
-  return this->IsFine(first, last) && end - begin < 1.0 ? this->FindFineBehavior(begin, end)
-                                                        : this->FindBinBehavior(first, last);
+  return end - begin < 1.0 ? this->FindFineBehavior(begin, end)
+                           : this->FindBinBehavior(GetBin(begin), GetBin(end));
 }
 
 TransferFunction::Behavior TransferFunction::FindFineBehavior(double begin, double end) const
 {
+  const std::size_t last = this->FindPart(end);
   Behavior largest;
-  const int last = this->GetNumber(end);
-  for (int number = this->GetNumber(begin); number <= last; ++number)
+  double jumps = 0.0;
+  for (std::size_t number = this->FindPart(begin); number <= last; ++number)
   {
-    const std::uint32_t division = this->Divisions[static_cast<std::size_t>(number)];
-    if (division == 0)
+    const Part& part = this->Parts[number];
+    largest = GetLarger(largest, part.Steepness);
+    if (number < last)
     {
-      largest = GetLarger(largest, this->FindBinBehavior(number, number));
-      continue;
-    }
-    const std::size_t lastPart = this->FindPart(this->Divided[division], end);
-    for (std::size_t part = this->FindPart(this->Divided[division], begin); part <= lastPart;
-         ++part)
-    {
-      largest = GetLarger(largest, this->Parts[part]);
+      jumps += this->Parts[number + 1].Jump;
     }
   }
+  // A jump is passed at one place of the way between the two.
+  constexpr double least = 1e-6;
+  largest.Change += jumps / std::max(end - begin, least);
   return largest;
 }
 

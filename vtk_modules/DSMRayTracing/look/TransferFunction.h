@@ -5,10 +5,8 @@
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/look/FunctionSamples.h"
 
-#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -21,21 +19,23 @@ namespace rt
 /// Emission and absorption of a medium as a function of its value. Values outside of the function's
 /// range are clamped to it. The function is integrated over the values beforehand, so a ray between
 /// two values misses none of the values in between (Engel et al., "High-quality pre-integrated
-/// volume rendering", 2001). The range has even bins, so that a value's bin is found by a
-/// multiplication; where a bin is too wide for the function, it is divided into parts. Any number of
-/// threads may call it.
+/// volume rendering", 2001). It is linear in parts that begin and end where it bends or jumps,
+/// however close to one another that is; the range is divided into even bins only to find parts
+/// quickly. Any number of threads may call it.
+///
+/// Places are values in bins, 0 where the function's narrowest part begins, so that floats tell these apart.
 class TransferFunction
 {
 public:
   /// Number of even bins in the range of values.
-  static constexpr int Bins = 4096;
+  static constexpr int Bins = 1024;
 
-  /// `samples`: one more than bins, evenly spaced from `first` to `last`, which is greater. Red,
-  /// green, blue (straight), and extinction (w): optical depth in a unit of length.
-  /// `between`: further samples, ascending. `cellLength`: of two extinctions with
-  /// which a cell is opaque, one is as good as the other.
-  TransferFunction(double first, double last, const std::vector<glm::dvec4>& samples,
-    double cellLength = 0.0, const std::vector<FunctionSample>& between = {});
+  /// `samples`: ascending, at least two, the function's range from the first to the last of them. Two of the same
+  /// value are a jump. Their looks are red, green, blue (straight), and extinction (w): optical depth in a unit of
+  /// length. `cellLength`: of two extinctions with which a cell is opaque, one is as good as the other.
+  explicit TransferFunction(const std::vector<FunctionSample>& samples, double cellLength = 0.0);
+  /// The same of even samples from `first` to `last`, which is greater.
+  TransferFunction(double first, double last, const std::vector<glm::dvec4>& samples);
 
   /// Samples a function as finely as it needs. `look(value)`: as the samples above. `nodes`: values
   /// where it may bend or jump. `least`: an extinction that makes no difference.
@@ -43,38 +43,44 @@ public:
     const std::function<glm::dvec4(double)>& look, const std::vector<double>& nodes, double least,
     double cellLength);
 
-  double GetFirst() const { return this->First; }
+  /// The value at place 0.
+  double GetOrigin() const { return this->Origin; }
   /// Bins in a unit of values.
   double GetScale() const { return this->Scale; }
+  double GetPlace(double value) const { return (value - this->Origin) * this->Scale; }
+  /// The largest red, green or blue that is emitted anywhere in a unit of length.
+  double GetBrightest() const { return this->Brightest; }
 
-  /// Linear in each: bin 0 is what is below the function's range, the last one what is above. The
-  /// begin of a divided bin is not a number: ask Integrate.
-  struct Bin
+  /// The function in single precision. Part 0 is what is below the range, the last one what is above. The part of a
+  /// place is the last one that begins at or before it: Index[bin] or one of the 2^Steps - 1 parts behind it. Bins
+  /// begin at place First.
+  struct Table
   {
-    Lanes Integral; ///< up to the bin's begin
-    Lanes Begin;    ///< emission and extinction there
-    Lanes Growth;   ///< in the width of an even bin
+    float First;
+    std::vector<float> Begin;        ///< of each part; infinite behind the last one
+    std::vector<std::int32_t> Index; ///< for each bin: the part at its begin
+    int Steps;
+    /// For each part: red, green, blue and extinction where it begins, then their growth in a bin.
+    std::vector<float> Rows;
   };
-  const Bin* GetTable() const { return this->Table.data(); }
-  /// Number of even bins, with the two beyond the range.
-  int GetTableSize() const { return this->AllBins; }
+  const Table& GetTable() const { return this->Floats; }
 
-  /// Emission (x, y, z) and extinction, integrated from First to a place in bins from there.
+  /// Emission (x, y, z) and extinction, integrated from the range's begin to a place.
   /// `slope`: what they are there.
   Lanes Integrate(double place, Lanes& slope) const
   {
-    const int number = this->GetNumber(place);
-    const Bin& bin = this->Table[static_cast<std::size_t>(number)];
-    return std::isnan(bin.Begin[3]) ? this->IntegratePart(number, place, slope)
-                                    : Integrate(bin, place - (number - 1), slope);
+    const Part& part = this->Parts[this->FindPart(place)];
+    const double way = place - part.Begin;
+    const Lanes change = part.Growth * Lanes(way);
+    slope = part.Look + change;
+    return part.Integral + (part.Look + Lanes(0.5) * change) * Lanes(way);
   }
 
-  /// How the function behaves between two places in bins from First, the second not less than the first.
+  /// How the function behaves between two places, the second not less than the first.
   struct Behavior
   {
     double Extinction = 0.0; ///< the largest
-    /// In the width of an even bin, at most: of what is seen of a short way for its length, and of
-    /// the color itself.
+    /// In the width of a bin, at most: of what is seen of a short way for its length, and of the color itself.
     double Change = 0.0;
     double Tinge = 0.0;
   };
@@ -86,7 +92,7 @@ public:
   bool IsSeen(double first, double last) const
   {
     return first <= last &&
-      this->IsPlaceSeen((first - this->First) * this->Scale, (last - this->First) * this->Scale);
+      this->IsPlaceSeen(this->GetPlace(first), this->GetPlace(last));
   }
   bool IsSeenAtAll() const { return this->SeenBefore.back() > 0; }
 
@@ -94,77 +100,41 @@ public:
   std::uint64_t GetDigest() const { return this->Digest; }
 
 private:
-  /// The parts of a divided bin: numbers of the first one and of the one after the last.
-  struct Division
+  struct Part
   {
-    std::size_t First = 0;
-    std::size_t Last = 0;
+    double Begin; ///< place
+    double End;
+    Lanes Integral; ///< up to the begin
+    Lanes Look;     ///< emission and extinction there
+    Lanes Growth;   ///< in a bin
+    double LastExtinction;
+    double Jump; ///< of what is seen, from the end of the part before
+    Behavior Steepness;
   };
-  /// Where parts meet: a place in even bins, and the look there.
-  struct Corner
-  {
-    double Place;
-    glm::dvec4 Look;
-  };
-  /// Properties of an entire bin: the mean of emission and extinction, and changes as in Behavior.
-  struct Whole
-  {
-    glm::dvec4 Slope{ 0.0 };
-    double Change = 0.0;
-    double Tinge = 0.0;
-  };
-  /// Divides a bin, up to whose begin the function has an integral.
-  Whole Divide(
-    int number, const std::vector<Corner>& corners, const glm::dvec4& integral, double cellLength);
-  std::size_t FindPart(const Division& division, double place) const;
-  Lanes IntegratePart(int number, double place, Lanes& slope) const;
-  static Lanes Integrate(const Bin& bin, double way, Lanes& slope)
-  {
-    const Lanes change = bin.Growth * Lanes(way);
-    slope = bin.Begin + change;
-    return bin.Integral + (bin.Begin + Lanes(0.5) * change) * Lanes(way);
-  }
 
-  /// A place that is not a number is in bin 0.
-  int GetNumber(double place) const
+  void AddPart(const FunctionSample& begin, const FunctionSample& end, double cellLength);
+  void SetBins();
+  void SetTable();
+  /// The last part that begins at or before a place; that of a place that is not a number is part 0.
+  std::size_t FindPart(double place) const;
+  /// 1 for the first bin; 0 below the range, Bins + 1 above.
+  int GetBin(double place) const
   {
-    return place >= this->Last ? this->AllBins - 1 : place >= 0.0 ? static_cast<int>(place) + 1 : 0;
+    const double bin = place - this->Begin;
+    return bin >= Bins ? Bins + 1 : bin >= 0.0 ? static_cast<int>(bin) + 1 : 0;
   }
-  bool AnyIsSeen(int first, int last) const
-  {
-    return this->SeenBefore[static_cast<std::size_t>(last) + 1] >
-      this->SeenBefore[static_cast<std::size_t>(first)];
-  }
-  bool IsPlaceSeen(double begin, double end) const
-  {
-    const int first = this->GetNumber(begin);
-    const int last = this->GetNumber(end);
-    return this->AnyIsSeen(first, last) &&
-      (!this->IsFine(first, last) || this->FindFineBehavior(begin, end).Extinction > 0.0);
-  }
-  /// Returns whether parts tell more than bins of what is between two bins.
-  bool IsFine(int first, int last) const
-  {
-    return !this->Places.empty() && last - first <= 1 &&
-      (this->Divisions[static_cast<std::size_t>(first)] |
-        this->Divisions[static_cast<std::size_t>(last)]) != 0;
-  }
-  /// Between two places in one bin, or in two that follow one another.
+  bool IsPlaceSeen(double begin, double end) const;
   Behavior FindFineBehavior(double begin, double end) const;
   Behavior FindBinBehavior(int first, int last) const;
 
-  double First;
+  double Origin;
   double Scale;
-  double Last; ///< end of the range, in bins from First
-  int AllBins;
-  std::vector<Bin> Table; ///< even bins, then the parts of all divided ones
-  /// Division number for each even bin; 0 for a bin that is whole.
-  std::vector<std::uint32_t> Divisions;
-  std::vector<Division> Divided; ///< by division; the first one is of no bin
-  std::vector<double> Places;    ///< where each part begins, in even bins
-  std::vector<Behavior> Parts;   ///< of each part
-  std::vector<int> SeenBefore;   ///< bins before each that are seen; one more at the end
-  /// Largest Behavior of 1, 2, 4 ... groups of bins that follow one another, from each group on.
+  double Begin; ///< place of the range's begin
+  double Brightest = 0.0;
+  std::vector<Part> Parts;
+  Table Floats;
+  std::vector<int> SeenBefore; ///< parts before each that are seen; one more at the end
+  /// Largest Behavior of 1, 2, 4 ... bins that follow one another, from each bin on.
   std::vector<std::vector<Behavior>> Largest;
   std::uint64_t Digest;
 };

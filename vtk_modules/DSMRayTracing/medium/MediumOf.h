@@ -102,6 +102,7 @@ public:
       return 0;
     }
     light.SetSpace(rays, wanted, this->Medium.WorldToSpace);
+    light.Nearest = this->Medium.Look.Nearest;
     return this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -89,6 +90,9 @@ public:
     : Medium(medium)
     , Media(store, worker)
     , Cell(medium.Field.GetFinestLength())
+    , ErrorFactor(1.0 /
+        (LargeSum * medium.Field.GetFinestLength(medium.WorldToSpace) *
+          std::max(medium.Function->GetBrightest(), std::numeric_limits<double>::min())))
   {
   }
 
@@ -115,6 +119,7 @@ public:
     const auto sums = std::make_unique<MediumLight>();
     sums->Begin(rays, wanted);
     sums->SetSpace(rays, wanted, this->Medium.WorldToSpace);
+    sums->ErrorFactor = this->ErrorFactor;
     this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {
@@ -136,6 +141,9 @@ private:
   const SumOf<FieldType>& Medium;
   typename FieldType::template Media<Store> Media;
   double Cell; ///< for FindThickParts
+  /// Errors count beside the sum over so many cells with the largest value.
+  static constexpr double LargeSum = 8.0;
+  double ErrorFactor; ///< MediumLight::ErrorFactor
 };
 
 } // namespace rt

@@ -87,7 +87,9 @@ public:
       {
         this->Transmittance[ray] = 1.0;
         this->Middle[ray] = std::numeric_limits<double>::infinity();
-        this->Sum[ray] = Lanes(0.0);
+        this->Sum[0][ray] = 0.0;
+        this->Sum[1][ray] = 0.0;
+        this->Sum[2][ray] = 0.0;
       });
   }
 
@@ -133,7 +135,10 @@ public:
   void Blend(int ray, const Lanes& amount, double passed, double seen)
   {
     double& transmittance = this->Transmittance[ray];
-    this->Sum[ray] = this->Sum[ray] + amount * Lanes(transmittance * seen);
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      this->Sum[channel][ray] += amount[channel] * (transmittance * seen);
+    }
     transmittance *= passed;
   }
   /// Before Blend: tells where the piece is.
@@ -147,9 +152,6 @@ public:
     }
   }
   ///@}
-  /// Red, green and blue of the sum.
-  Lanes& GetSum(int ray) { return this->Sum[ray]; }
-
   /// T of the place that stands for all that a ray meets: where half of the light is gone; else, where there is
   /// anything.
   double GetPlace(int ray) const
@@ -162,7 +164,7 @@ public:
   /// Returns the color that arrives at the ray's origin.
   glm::dvec3 GetColor(int ray) const
   {
-    return { this->Sum[ray][0], this->Sum[ray][1], this->Sum[ray][2] };
+    return { this->Sum[0][ray], this->Sum[1][ray], this->Sum[2][ray] };
   }
 
   /// For each ray:
@@ -171,6 +173,7 @@ public:
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
   double Last[MaxRays];          ///< T where the last of it ends, where there is anything
   double Middle[MaxRays];        ///< T where half of the light is gone; infinite: nowhere
+  double Sum[3][MaxRays];        ///< red, green and blue
 
   /// True if pieces are kept in addition to the sums.
   bool KeepsPieces = false;
@@ -181,6 +184,10 @@ public:
   double JoinedLength = 0.0;
   /// MediumTracer::HasLateExtinction of the current medium.
   bool HasLateExtinction = false;
+  /// Errors that are as small as MediumTolerance says when they are multiplied by this: 1 for what a pixel shows.
+  double ErrorFactor = 1.0;
+  /// MediumLook::Nearest of the current medium.
+  bool Nearest = false;
   /// Rays with less transmittance than this end in the current medium.
   double DarkBelow = Dark;
 
@@ -192,8 +199,6 @@ private:
     return (end - last.Begin) * this->Length[ray] <= most &&
       last.Amount[3] + amount[3] <= JoinedDepth;
   }
-
-  Lanes Sum[MaxRays]; ///< red, green and blue
 };
 
 } // namespace rt

@@ -21,24 +21,15 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Behavior of a medium's transfer function where rays are; see TransferFunction::Behavior.
-template <class D>
-struct MediumBehavior
-{
-  hn::Vec<D> Extinction;
-  hn::Vec<D> Change;
-  hn::Vec<D> Tinge;
-};
-
 /// Rays of a vector in the cells that they cross, each in a cell of its own. This is all that the visitors of this
 /// folder (FirstCrossings, CrossingCounts, ExtremumCells, MediumCells) know of cells: so any kind of cell, in which
 /// values along a ray are a polynomial of at most the third degree, can use them. A kind derives from this, and adds:
 ///
 /// - `Cubics<D> GetCubics() const`: values from Enter (at 0) to Exit (at 1), less what the kernel subtracts: the
-///   isovalue of surfaces, TransferFunction::GetFirst of media, nothing for extrema.
+///   isovalue of surfaces, TransferFunction::GetOrigin of media, nothing for extrema.
 /// - `Cubics<D> GetCubics(Vector sign) const`: the same of values times 1 or -1. For ExtremumCells.
-/// - `static constexpr bool HasRange`, and, if that is true, `void FindRange(Vector& least, Vector& most) const`: a
-///   range of values that the cell's values never leave. For ExtremumCells, which needs it, and MediumCells.
+/// - `void FindRange(Vector& least, Vector& most) const`: a range of values that the cell's values never leave. For
+///   ExtremumCells and MediumCells.
 /// - `static constexpr int PlaceNumbers`, and `void PutPlace(put) const`, which calls `put(number, vector)` for so many
 ///   numbers: what is needed to tell the place of a hit once its position between Enter and Exit is known. For
 ///   FirstCrossings.
@@ -46,8 +37,7 @@ struct MediumBehavior
 ///   which crosses the surface in its cell, that cross it where they leave their cells, since values of the next cell
 ///   do not agree with those of this one. For FirstCrossings and CrossingCounts.
 ///
-/// A visitor has `std::uint32_t Visit(const Crossing&)`, which returns the lanes (bits) whose ray's search ends, and
-/// `NeedsBehavior`.
+/// A visitor has `std::uint32_t Visit(const Crossing&)`, which returns the lanes (bits) whose ray's search ends.
 template <class D>
 struct CellCrossing
 {
@@ -59,7 +49,6 @@ struct CellCrossing
   hn::Mask<D> Crossing;
   Vector Enter; ///< T at which the ray enters the cell
   Vector Exit;
-  MediumBehavior<D> Behavior; ///< in the cell or around it; set for visitors that need it
 };
 
 } // namespace HWY_NAMESPACE

@@ -30,7 +30,6 @@ template <class D>
 class ExtremumCells
 {
 public:
-  static constexpr bool NeedsBehavior = false;
 
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
@@ -44,7 +43,6 @@ public:
   template <class Crossing>
   HWY_INLINE std::uint32_t Visit(const Crossing& cells)
   {
-    static_assert(Crossing::HasRange, "extrema are limited by the range of the cell's values");
     const D tag;
     Vector least;
     Vector most;

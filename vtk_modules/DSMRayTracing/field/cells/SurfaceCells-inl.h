@@ -115,7 +115,6 @@ template <class D, int PlaceNumbers>
 class FirstCrossings
 {
 public:
-  static constexpr bool NeedsBehavior = false;
   using Found = FoundCrossings<PlaceNumbers>;
 
   /// `crossings` is null when only those rays that meet the surface are asked for, not where.
@@ -181,7 +180,6 @@ template <class D>
 class CrossingCounts
 {
 public:
-  static constexpr bool NeedsBehavior = false;
 
   explicit CrossingCounts(int* counts)
     : Counts(counts)

@@ -36,8 +36,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// FindCrossedNodes). Then rays wait for their next macrocell, or the next cell in it, and those that
 /// wait for the same fill the vectors, wherever they are: most meet few macrocells, and few cells there.
 ///
-/// `Visitor` says what is looked for: it visits each VoxelCrossing. If it `NeedsBehavior`, it visits entire
-/// macrocells that are smooth (PacketPart), each MacrocellCrossing. `Planes`: UniformPlanes or StretchedPlanes.
+/// `Visitor` says what is looked for: it visits each VoxelCrossing. `Planes`: UniformPlanes or StretchedPlanes.
 template <class D, class Visitor, class Planes = UniformPlanes<D>>
 class BrickSearch
 {
@@ -181,7 +180,7 @@ private:
       // Vectors that are not full can wait as long as there is something else to do.
       if (forCell >= Width || forMacrocell == 0)
       {
-        this->SearchCells(Batch(this->ForCell), known);
+        this->SearchCells(Batch(this->ForCell));
       }
       else
       {
@@ -237,145 +236,17 @@ private:
         this->Brick.FindCells(this->Part, macrocell);
       }
     }
-    std::uint32_t passed = 0;
-    std::uint32_t ended = 0;
-    if constexpr (Visitor::NeedsBehavior)
-    {
-      for (int lane = 0; lane < batch.Count; ++lane)
-      {
-        passed |= std::uint32_t{ (known.Smooth >> numbers[lane] & 1) != 0 } << lane;
-      }
-      if (passed != 0)
-      {
-        ended = this->Pass(batch, passed, lines, entry, known);
-        if (passed == batch.GetLanes())
-        {
-          this->EndMacrocells(batch, passed, ended);
-          return;
-        }
-      }
-    }
     const Numbers crossed = FindCrossedNodes<D>(lines, typename Planes::Box(this->Grid, entry, 1),
       Load(batch, this->Packet.BrickEnter), Load(batch, this->Packet.BrickLeave));
     HWY_ALIGN std::uint64_t cells[Width];
     hn::Store(
       hn::And(crossed, LoadLanes<std::uint64_t, Width>(known.Cells, numbers)), NumberTag(), cells);
-    for (std::uint32_t left = batch.GetLanes() & ~passed; left != 0; left &= left - 1)
+    for (int lane = 0; lane < batch.Count; ++lane)
     {
-      const int lane = __builtin_ctz(left);
       const std::size_t ray = batch.Ray[lane];
       this->Cells[ray] = cells[lane];
       this->GoOn(ray, true);
     }
-    this->EndMacrocells(batch, passed, ended);
-  }
-
-  /// Lets the rays of those lanes (bits) wait for what comes behind their macrocells, if they have not `ended`.
-  HWY_INLINE void EndMacrocells(const Batch& batch, std::uint32_t lanes, std::uint32_t ended)
-  {
-    for (; lanes != 0; lanes &= lanes - 1)
-    {
-      const int lane = __builtin_ctz(lanes);
-      const std::size_t ray = batch.Ray[lane];
-      const std::uint64_t isOver = ended >> lane & 1;
-      this->Found |= isOver << ray;
-      this->Cells[ray] = 0;
-      this->GoOn(ray, isOver == 0);
-    }
-  }
-
-  /// Takes the rays of those lanes (bits) through macrocells that they enter at those planes. Returns those that end.
-  HWY_INLINE std::uint32_t Pass(const Batch& batch, std::uint32_t lanes, const RayLines<D>& lines,
-    const Vector entry[3], const PacketPart& known)
-  {
-    const D tag;
-    MacrocellCrossing<D> passed;
-    passed.Ray = batch.Ray;
-    passed.There = lanes;
-    passed.Enter = Load(batch, this->Packet.BrickEnter);
-    passed.Exit = Load(batch, this->Packet.BrickLeave);
-    Vector direction[3];
-    Vector lowest[3];
-    Vector highest[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const bool forward = this->Forward[axis];
-      const Vector edge = hn::Set(tag, bricks::MacrocellEdge);
-      const Vector leave = forward ? hn::Add(entry[axis], edge) : hn::Sub(entry[axis], edge);
-      passed.Enter =
-        hn::Max(passed.Enter, lines.GetPlaneT(axis, this->Grid.GetPlace(axis, entry[axis])));
-      passed.Exit = hn::Min(passed.Exit, lines.GetPlaneT(axis, this->Grid.GetPlace(axis, leave)));
-      direction[axis] = Load(batch, this->Packet.Direction[axis]);
-      const Vector origin = hn::Set(tag, this->Origin[axis]);
-      lowest[axis] = hn::Sub(forward ? entry[axis] : leave, origin);
-      highest[axis] = hn::Min(hn::Sub(forward ? leave : entry[axis], origin),
-        hn::Set(tag, static_cast<double>(this->Brick.GetCells(axis))));
-    }
-    using Macrocell = typename Planes::Macrocell;
-    const auto getMacrocell = [&](int axis) {
-      return Macrocell(this->Grid, axis, hn::Add(lowest[axis], hn::Set(tag, this->Origin[axis])));
-    };
-    const Macrocell macrocells[3] = { getMacrocell(0), getMacrocell(1), getMacrocell(2) };
-    // Values, less what the brick subtracts, at T.
-    const auto getValues = [&](Vector t)
-    {
-      Vector place[3];
-      Vector within[3];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const Vector origin = hn::Set(tag, this->Origin[axis]);
-        const Vector way = hn::Add(lines.Origin[axis], hn::Mul(t, direction[axis]));
-        const Vector last = hn::Sub(highest[axis], hn::Set(tag, 1.0));
-        if constexpr (Planes::AreUniform)
-        {
-          const Vector point = hn::Sub(way, origin);
-          place[axis] = hn::Min(hn::Max(macrocells[axis].FindCell(point), lowest[axis]), last);
-          within[axis] = ClampToUnit(hn::Sub(point, place[axis]));
-        }
-        else
-        {
-          place[axis] = hn::Min(hn::Sub(macrocells[axis].FindCell(way), origin), last);
-          const typename Planes::Cell cell(this->Grid, axis, hn::Add(place[axis], origin));
-          within[axis] = ClampToUnit(cell.GetWithin(way));
-        }
-      }
-      Vector corners[8];
-      if (this->Brick.Floats.First)
-      {
-        this->LoadCorners(place, corners);
-      }
-      else
-      {
-        this->AskForCorners(lanes, place, corners);
-      }
-      const auto mix = [](Vector a, Vector b, Vector part)
-      { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
-      const Vector front = mix(
-        mix(corners[0], corners[1], within[0]), mix(corners[2], corners[3], within[0]), within[1]);
-      const Vector back = mix(
-        mix(corners[4], corners[5], within[0]), mix(corners[6], corners[7], within[0]), within[1]);
-      return mix(front, back, within[2]);
-    };
-    passed.First = getValues(passed.Enter);
-    passed.Middle = getValues(hn::Mul(hn::Set(tag, 0.5), hn::Add(passed.Enter, passed.Exit)));
-    passed.Last = getValues(passed.Exit);
-    // Rays that only touch the macrocell do not cross it.
-    passed.Crossing = hn::Lt(passed.Enter, passed.Exit);
-    passed.Behavior = this->GetBehavior(batch, known);
-    return this->Look.Visit(passed);
-  }
-
-  /// In the macrocells that rays are in.
-  HWY_INLINE MediumBehavior<D> GetBehavior(const Batch& batch, const PacketPart& known) const
-  {
-    std::size_t numbers[Width];
-    for (int lane = 0; lane < Width; ++lane)
-    {
-      numbers[lane] = static_cast<std::size_t>(__builtin_ctzll(this->Macrocells[batch.Ray[lane]]));
-    }
-    return { LoadLanes<double, Width>(known.Extinction, numbers),
-      LoadLanes<double, Width>(known.Change, numbers),
-      LoadLanes<double, Width>(known.Tinge, numbers) };
   }
 
   /// Lets a ray wait for what comes next, if it is `open`.
@@ -450,7 +321,7 @@ private:
   }
 
   /// Searches the cell for which rays wait.
-  HWY_INLINE void SearchCells(const Batch& batch, const PacketPart& known)
+  HWY_INLINE void SearchCells(const Batch& batch)
   {
     const D tag;
     const Numbers macrocells =
@@ -510,10 +381,6 @@ private:
       cells.Place[axis] = place[axis];
       cells.Start[axis] = getLocal(enter, in[axis], entry);
       cells.End[axis] = getLocal(exit, out[axis], hn::Sub(one, entry));
-    }
-    if constexpr (Visitor::NeedsBehavior)
-    {
-      cells.Behavior = this->GetBehavior(batch, known);
     }
     const std::uint32_t ended = this->Look.Visit(cells) & batch.GetLanes();
     for (int lane = 0; lane < batch.Count; ++lane)

@@ -42,9 +42,6 @@ public:
     return GetNodeBox(counts);
   }
 
-  /// Extrema are looked for in cells.
-  void Describe(const bricks::VoxelBrick<T>&, const int*, const int*, int, PacketPart&) const {}
-
   double GetSubtracted() const { return 0.0; }
   Lanes::Half SubtractPair(const T* samples) const
   {

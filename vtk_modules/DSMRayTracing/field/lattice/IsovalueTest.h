@@ -69,9 +69,6 @@ public:
     return cells & GetNodeBox(counts);
   }
 
-  /// Surfaces are looked for in cells.
-  void Describe(const bricks::VoxelBrick<T>&, const int*, const int*, int, PacketPart&) const {}
-
   /// Returns the value that is subtracted from the corners.
   double GetSubtracted() const { return this->Level.GetIsovalue(); }
   Lanes::Half SubtractPair(const T* samples) const { return this->Level.SubtractPair(samples); }

@@ -18,15 +18,6 @@ struct PacketPart
   std::uint64_t Macrocells; ///< those that may hold the surface
   std::uint64_t Known;      ///< those whose Cells are valid
   std::uint64_t Cells[64];  ///< for each macrocell: its cells that have corners on both sides
-  ///@{
-  /// For media: TransferFunction::Behavior in each macrocell.
-  double Extinction[64];
-  double Change[64];
-  double Tinge[64];
-  ///@}
-  /// The subset of Known in which values bend so little that rays may go through them in one step; see
-  /// TransferTest.
-  std::uint64_t Smooth;
 };
 
 /// Queries of a packet about a brick and an isovalue, independent of the type of the samples.

@@ -12,8 +12,8 @@
 #include "DSMRayTracing/base/VectorKernel.h"
 #include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/cells/ExtremumCells-inl.h"
-#include "DSMRayTracing/field/cells/MediumCells-inl.h"
 #include "DSMRayTracing/field/cells/SurfaceCells-inl.h"
+#include "DSMRayTracing/field/lattice/BrickMarch-inl.h"
 #include "DSMRayTracing/field/lattice/BrickSearch-inl.h"
 #include "DSMRayTracing/field/lattice/MacrocellComparison-inl.h"
 #include "DSMRayTracing/field/lattice/NodePath-inl.h"
@@ -182,11 +182,13 @@ private:
   }
 
   static RayPacket::Mask March(const RayPacket& packet, RayPacket::Mask rays,
-    const PacketBrick& brick, const double origin[3], const TransferFunction& function,
+    MediumBrick& brick, const double origin[3], const TransferFunction& function,
     MediumLight& light)
   {
-    MediumCells<D> cells(function, light);
-    return Search(packet, rays, brick, origin, cells);
+    using Floats = hn::CappedTag<float, Width == 1 ? 1 : 16>;
+    return packet.Planes
+      ? BrickMarch<Floats, true>(packet, brick, origin, function, light).March(rays)
+      : BrickMarch<Floats, false>(packet, brick, origin, function, light).March(rays);
   }
 
   static RayPacket::Mask FindExtrema(const RayPacket& packet, RayPacket::Mask rays,

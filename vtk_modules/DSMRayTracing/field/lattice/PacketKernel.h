@@ -5,6 +5,7 @@
 #include "DSMBricks/base/Box.h"
 #include "DSMRayTracing/field/grid/IndexSpace.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
+#include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/field/lattice/PacketBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
@@ -50,9 +51,8 @@ struct PacketKernel
   void (*CountCrossings)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
     const double origin[3], int* counts);
 
-  /// Gives to `light` what a medium adds along `rays` in the brick that they are in, whose corners have the function's
-  /// First subtracted. Returns those that are dark then.
-  RayPacket::Mask (*March)(const RayPacket& packet, RayPacket::Mask rays, const PacketBrick& brick,
+  /// Gives to `light` what a medium adds along `rays` in the brick that they are in. Returns those that are dark then.
+  RayPacket::Mask (*March)(const RayPacket& packet, RayPacket::Mask rays, MediumBrick& brick,
     const double origin[3], const TransferFunction& function, MediumLight& light);
 
   /// Looks for the extrema of values along `rays` in the brick that they are in, whose corners have nothing subtracted.

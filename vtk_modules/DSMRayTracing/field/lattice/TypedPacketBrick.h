@@ -57,7 +57,6 @@ public:
   {
     this->Part.Macrocells = this->Order.TurnAll(this->ComparePart(part));
     this->Part.Known = 0;
-    this->Part.Smooth = 0;
     return this->Part;
   }
 
@@ -74,7 +73,6 @@ public:
     }
     this->Part.Cells[macrocell] =
       this->Order.TurnAll(this->Test.FindCells(this->Brick, first, counts));
-    this->Test.Describe(this->Brick, first, counts, macrocell, this->Part);
     this->Part.Known |= std::uint64_t{ 1 } << macrocell;
   }
 

@@ -91,7 +91,6 @@ template <class D>
 struct VoxelCrossing : CellCrossing<D>
 {
   using Vector = hn::Vec<D>;
-  static constexpr bool HasRange = true;
   static constexpr int PlaceNumbers = 9;
 
   Vector Corners[8]; ///< less what the brick subtracts
@@ -196,29 +195,6 @@ struct VoxelCrossing : CellCrossing<D>
       hidden |= std::uint32_t{ isHidden } << lane;
     }
     return hidden;
-  }
-};
-
-/// Rays in macrocells that they go through in one step, along which values are nearly quadratic; see CellCrossing. For
-/// visitors that need Behavior.
-template <class D>
-struct MacrocellCrossing : CellCrossing<D>
-{
-  using Vector = hn::Vec<D>;
-  static constexpr bool HasRange = false;
-
-  Vector First; ///< values, less what the brick subtracts: where the ray enters
-  Vector Middle;
-  Vector Last;
-
-  HWY_INLINE Cubics<D> GetCubics() const
-  {
-    const Vector two = hn::Set(D(), 2.0);
-    const Vector bend =
-      hn::Mul(two, hn::Sub(hn::Add(this->First, this->Last), hn::Mul(two, this->Middle)));
-    const Vector coefficients[4] = { this->First, hn::Sub(hn::Sub(this->Last, this->First), bend),
-      bend, hn::Zero(D()) };
-    return Cubics<D>(coefficients, this->Last);
   }
 };
 

@@ -4,15 +4,11 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
-#include "DSMRayTracing/field/lattice/TransferTest.h"
-#include "DSMRayTracing/field/lattice/TypedPacketBrick.h"
+#include "DSMRayTracing/field/lattice/TypedMediumBrick.h"
 #include "DSMRayTracing/field/lattice/VoxelSearch.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
-
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -54,18 +50,14 @@ protected:
     const typename Store::Pin pin =
       this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
     const bricks::VoxelBrick<T> voxels(pin.GetData());
-    glm::dmat3 axes = light.WorldToSpace * glm::dmat3(field.IndexToWorld);
-    const glm::dvec3 scale = packets.GetScale(brick.Id);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      axes[axis] /= scale[axis];
-    }
-    const TransferTest<T> test(
-      function, this->Kernel.Macrocells, axes, field.GetIndexSpace().GetPlanes(), brick.Lower);
-    const TypedPacketBrick<T, TransferTest<T>> medium(voxels, test, packet.Forward);
+    TypedMediumBrick<T> medium(voxels, function, light.Nearest, packet.Planes, brick.Lower,
+      this->Kernel.Macrocells, *this->Memory);
     dark = this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
     return meets;
   }
+
+private:
+  std::unique_ptr<MediumBrickMemory> Memory = std::make_unique<MediumBrickMemory>();
 };
 
 } // namespace rt

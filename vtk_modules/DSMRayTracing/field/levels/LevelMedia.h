@@ -92,6 +92,8 @@ private:
           }
           const int level = lattice.GetBrick(bricks.Bricks[place].Id).Level;
           all.JoinedLength = light.JoinedLength * scales.GetSize(level) / finest;
+          // Bricks may come in any order: what is before this one is not known.
+          all.ClearSums(visits[place].Meets);
           RayMask none;
           const RayMask meets = this->template MarchBrick<decltype(sample)>(
             field, function, bricks, place, packets, open, all, none);

@@ -44,17 +44,15 @@ private:
     const Segment& segment, const TransferFunction& function, int ray, MediumLight& light)
   {
     const double length = (segment.Exit - segment.Enter) * light.Length[ray];
-    const auto toBins = [&](double value)
-    { return (value - function.GetFirst()) * function.GetScale(); };
     const double count = CountPieces(segment, function, length, light.JoinedLength);
     Lanes slope;
-    double place = toBins(segment.Values.Coefficients[0]);
+    double place = function.GetPlace(segment.Values.Coefficients[0]);
     Lanes integral = function.Integrate(place, slope);
     for (double number = 0.0; number < count && !light.IsDark(ray); ++number)
     {
       const double begin = number / count;
       const double end = (number + 1.0) / count;
-      const double next = toBins(end < 1.0 ? segment.Values.Evaluate(end) : segment.Last);
+      const double next = function.GetPlace(end < 1.0 ? segment.Values.Evaluate(end) : segment.Last);
       const double way = next - place;
       const Lanes before = integral;
       integral = function.Integrate(next, slope);
@@ -73,8 +71,8 @@ private:
   {
     const double scale = function.GetScale();
     const double* const cubic = segment.Values.Coefficients;
-    const auto behavior = function.FindBehavior((segment.Range.First - function.GetFirst()) * scale,
-      (segment.Range.Last - function.GetFirst()) * scale);
+    const auto behavior = function.FindBehavior(
+      function.GetPlace(segment.Range.First), function.GetPlace(segment.Range.Last));
     const double bend =
       scale * std::max(std::abs(2.0 * cubic[2]), std::abs(2.0 * cubic[2] + 6.0 * cubic[3]));
     const double range = scale * (std::abs(cubic[1]) + std::abs(cubic[2]) + std::abs(cubic[3]));

@@ -1,0 +1,581 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_BrickMarch_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_BrickMarch_inl_h
+#undef rt_BrickMarch_inl_h
+#else
+#define rt_BrickMarch_inl_h
+#endif
+
+#include "DSMBricks/layout/GridPlanes.h"
+#include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
+#include "DSMRayTracing/field/MediumTolerance.h"
+#include "DSMRayTracing/field/cells/MediumPieces-inl.h"
+#include "DSMRayTracing/field/lattice/MediumBrick.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/RayPacket.h"
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The rays of a packet through a medium in a brick. Each goes from node to node in its own lane of a vector: through a
+/// part of the brick or a macrocell in one step, where all that it holds is invisible, or where values along any ray
+/// through it are so nearly quadratic that the pixel cannot tell, else through a cell. A step asks for values where it
+/// begins, in its middle and where it ends.
+///
+/// In single precision, in coordinates of the brick. `IsStretched`: in a rectilinear grid.
+template <class F, bool IsStretched>
+class BrickMarch
+{
+public:
+  using Vector = hn::Vec<F>;
+  using Mask = hn::Mask<F>;
+  using Pieces = MediumPieces<F>;
+  using NumberTag = hn::RebindToSigned<F>;
+  using Numbers = hn::Vec<NumberTag>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(F()));
+
+  /// `origin`: the brick's first cell. Keeps references.
+  BrickMarch(const RayPacket& packet, MediumBrick& brick, const double origin[3],
+    const TransferFunction& function, MediumLight& light)
+    : Packet(packet)
+    , Brick(brick)
+    , Light(light)
+    , Ways(function, light)
+    , Fine(brick.IsNearest ? 2.0f : 1.0f)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Origin[axis] =
+        IsStretched ? packet.Planes->GetPlace(axis, origin[axis]) : origin[axis];
+      this->Count[axis] = this->Fine * static_cast<float>(brick.Cells[axis]);
+    }
+  }
+
+  /// Returns the subset of `rays` that are dark then.
+  RayPacket::Mask March(RayPacket::Mask rays)
+  {
+    RayPacket::Mask dark = 0;
+    for (int first = 0; first < RayPacket::Size; first += Width)
+    {
+      const std::uint32_t some = GetPart(rays, first, Width);
+      if (some != 0)
+      {
+        dark |= RayPacket::Mask{ this->MarchSome(first, some) } << first;
+      }
+    }
+    return dark;
+  }
+
+private:
+  /// The nodes that rays are in: first and last planes, in cells, and where rays leave.
+  struct Nodes
+  {
+    Vector Low[3];
+    Vector High[3];
+    Vector Leave[3]; ///< through the plane of each axis
+    Vector Exit;
+  };
+
+  /// Where rays are. T of the steps is 0 where they enter the brick, 1 where they leave it.
+  struct Rays
+  {
+    Vector Start[3];
+    Vector Way[3];
+    Vector Inverse[3];
+    Vector Length; ///< from 0 to 1, in the space of the medium
+    Vector T;
+    Vector Cell[3];
+  };
+
+  std::uint32_t MarchSome(int first, std::uint32_t some)
+  {
+    const F tag;
+    HWY_ALIGN double enter[Width];
+    HWY_ALIGN double distance[Width];
+    std::size_t number[Width];
+    Rays rays;
+    this->SetRays(first, some, number, enter, distance, rays);
+    this->Ways.SetRays(number, some, enter, distance);
+    Mask open = GetBitMask(tag, some);
+    Vector value = hn::Zero(tag);
+    Mask hasValue = hn::Lt(value, value);
+    const Vector tolerance = hn::Set(tag, static_cast<float>(MediumTolerance::Joint));
+    while (!hn::AllFalse(tag, open))
+    {
+      const Vector seenLength = this->Ways.GetSeen(rays.Length);
+      const auto isJoined = [&](const Nodes& nodes, Vector error)
+      {
+        return hn::Le(
+          hn::Mul(error, hn::Mul(hn::Sub(nodes.Exit, rays.T), seenLength)), tolerance);
+      };
+      Nodes nodes = this->GetNodes(rays, MediumBrick::PartCells);
+      Numbers node = this->GetNumbers(nodes, MediumBrick::PartCells, this->Brick.Parts, 0);
+      Vector error = this->FindErrors(node, open);
+      Mask joined = isJoined(nodes, error);
+      if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
+      {
+        const Nodes smaller = this->GetNodes(rays, MediumBrick::MacrocellCells);
+        const Numbers own = this->GetNumbers(smaller, MediumBrick::MacrocellCells,
+          this->Brick.Macrocells, this->Brick.FirstMacrocell);
+        const Vector ownError = this->FindErrors(own, hn::AndNot(joined, open));
+        Choose(joined, smaller, nodes);
+        node = hn::IfThenElse(hn::RebindMask(NumberTag(), joined), node, own);
+        error = hn::IfThenElse(joined, error, ownError);
+        joined = isJoined(nodes, error);
+        if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
+        {
+          Choose(joined, this->GetCells(rays), nodes);
+        }
+      }
+      const Mask visible = hn::AndNot(hn::Lt(error, hn::Zero(tag)), open);
+      if (hn::AllFalse(tag, visible))
+      {
+        hasValue = visible;
+      }
+      else
+      {
+        this->Step(rays, nodes, node, joined, visible, value, hasValue);
+      }
+      open = this->GoOn(rays, nodes, hn::AndNot(this->Ways.FindDark(), open));
+    }
+    const std::uint32_t dark = GetMaskBits(tag, this->Ways.FindDark()) & some;
+    this->Ways.PutRays(some);
+    return dark;
+  }
+
+  void SetRays(int first, std::uint32_t some, std::size_t* number, double* enter,
+    double* distance, Rays& rays) const
+  {
+    const F tag;
+    HWY_ALIGN float numbers[10][Width];
+    for (int lane = 0; lane < Width; ++lane)
+    {
+      // Copies of one that is there stand for those that are not.
+      const int ray = first + ((some >> lane & 1) != 0 ? lane : __builtin_ctz(some));
+      number[lane] = static_cast<std::size_t>(ray);
+      enter[lane] = this->Packet.BrickEnter[ray];
+      distance[lane] = this->Packet.BrickLeave[ray] - enter[lane];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double fine = IsStretched ? 1.0 : static_cast<double>(this->Fine);
+        const double way = this->Packet.Direction[axis][ray];
+        const double start = this->Packet.Origin[axis][ray] + enter[lane] * way;
+        constexpr double largest = 1e30;
+        numbers[axis][lane] = static_cast<float>((start - this->Origin[axis]) * fine);
+        numbers[3 + axis][lane] = static_cast<float>(way * distance[lane] * fine);
+        numbers[6 + axis][lane] = static_cast<float>(
+          std::clamp(1.0 / (way * distance[lane] * fine), -largest, largest));
+      }
+      numbers[9][lane] = static_cast<float>(this->Light.Length[ray] * distance[lane]);
+    }
+    const Vector zero = hn::Zero(tag);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      rays.Start[axis] = hn::Load(tag, numbers[axis]);
+      rays.Way[axis] = hn::Load(tag, numbers[3 + axis]);
+      rays.Inverse[axis] = hn::Load(tag, numbers[6 + axis]);
+      const Vector last = hn::Set(tag, this->Count[axis] - 1.0f);
+      rays.Cell[axis] = this->FindCells(axis, rays.Start[axis], zero, last, LargestSteps);
+    }
+    rays.Length = hn::Load(tag, numbers[9]);
+    rays.T = zero;
+  }
+
+  /// Where planes are, of the numbers that they have in the brick.
+  HWY_INLINE Vector GetPlanes(int axis, Vector number) const
+  {
+    if constexpr (IsStretched)
+    {
+      return hn::GatherIndex(F(), this->Brick.Planes[axis], hn::ConvertTo(NumberTag(), number));
+    }
+    else
+    {
+      return number;
+    }
+  }
+  /// The cells that points are in, out of those between two (of 2^steps).
+  HWY_INLINE Vector FindCells(int axis, Vector point, Vector first, Vector last, int steps) const
+  {
+    const F tag;
+    if constexpr (IsStretched)
+    {
+      Vector cell = first;
+      for (int step = steps; step-- > 0;)
+      {
+        const Vector next =
+          hn::Min(hn::Add(cell, hn::Set(tag, static_cast<float>(1 << step))), last);
+        cell = hn::IfThenElse(hn::Le(this->GetPlanes(axis, next), point), next, cell);
+      }
+      return cell;
+    }
+    else
+    {
+      return hn::Min(hn::Max(hn::Floor(point), first), last);
+    }
+  }
+  /// Steps of FindCells in a whole brick, and in a part.
+  static constexpr int LargestSteps = 9;
+  static constexpr int PartSteps = 5;
+
+  /// The nodes of so many cells along an edge that rays are in.
+  HWY_INLINE Nodes GetNodes(const Rays& rays, int cells) const
+  {
+    const F tag;
+    const float size = this->Fine * static_cast<float>(cells);
+    const Vector edge = hn::Set(tag, size);
+    const Vector inverse = hn::Set(tag, 1.0f / size);
+    Nodes nodes;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      nodes.Low[axis] = hn::Mul(hn::Floor(hn::Mul(rays.Cell[axis], inverse)), edge);
+      nodes.High[axis] =
+        hn::Min(hn::Add(nodes.Low[axis], edge), hn::Set(tag, this->Count[axis]));
+    }
+    this->SetExit(rays, nodes);
+    return nodes;
+  }
+  HWY_INLINE Nodes GetCells(const Rays& rays) const
+  {
+    Nodes nodes;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      nodes.Low[axis] = rays.Cell[axis];
+      nodes.High[axis] = hn::Add(rays.Cell[axis], hn::Set(F(), 1.0f));
+    }
+    this->SetExit(rays, nodes);
+    return nodes;
+  }
+  HWY_INLINE void SetExit(const Rays& rays, Nodes& nodes) const
+  {
+    nodes.Exit = hn::Set(F(), 1.0f);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector plane =
+        this->GetPlanes(axis, this->Packet.Forward[axis] ? nodes.High[axis] : nodes.Low[axis]);
+      nodes.Leave[axis] = hn::Mul(hn::Sub(plane, rays.Start[axis]), rays.Inverse[axis]);
+      nodes.Exit = hn::Min(nodes.Exit, nodes.Leave[axis]);
+    }
+    nodes.Exit = hn::Max(nodes.Exit, rays.T);
+  }
+  /// Keeps the nodes of `kept`, and takes the others from `other`.
+  static HWY_INLINE void Choose(Mask kept, const Nodes& other, Nodes& nodes)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      nodes.Low[axis] = hn::IfThenElse(kept, nodes.Low[axis], other.Low[axis]);
+      nodes.High[axis] = hn::IfThenElse(kept, nodes.High[axis], other.High[axis]);
+      nodes.Leave[axis] = hn::IfThenElse(kept, nodes.Leave[axis], other.Leave[axis]);
+    }
+    nodes.Exit = hn::IfThenElse(kept, nodes.Exit, other.Exit);
+  }
+
+  /// Numbers of nodes in MediumBrick. `count`: of those on each axis.
+  HWY_INLINE Numbers GetNumbers(
+    const Nodes& nodes, int cells, const int count[3], int firstNode) const
+  {
+    const F tag;
+    const Vector inverse = hn::Set(tag, 1.0f / (this->Fine * static_cast<float>(cells)));
+    const Vector rows = hn::Add(hn::Mul(nodes.Low[1], inverse),
+      hn::Mul(hn::Mul(nodes.Low[2], inverse), hn::Set(tag, static_cast<float>(count[1]))));
+    const Vector number = hn::Add(hn::Mul(nodes.Low[0], inverse),
+      hn::Mul(rows, hn::Set(tag, static_cast<float>(count[0]))));
+    return hn::Add(
+      hn::ConvertTo(NumberTag(), number), hn::Set(NumberTag(), std::int32_t{ firstNode }));
+  }
+  /// MediumBrick::Error of the nodes of `rays`.
+  HWY_INLINE Vector FindErrors(Numbers node, Mask rays)
+  {
+    const F tag;
+    const Vector error = hn::GatherIndex(tag, this->Brick.Error, node);
+    const Mask unknown =
+      hn::And(rays, hn::Eq(error, hn::Set(tag, MediumBrick::Unknown)));
+    if (hn::AllFalse(tag, unknown))
+    {
+      return error;
+    }
+    this->Describe(node, GetMaskBits(tag, unknown));
+    return hn::GatherIndex(tag, this->Brick.Error, node);
+  }
+  HWY_NOINLINE void Describe(Numbers node, std::uint32_t lanes)
+  {
+    HWY_ALIGN std::int32_t numbers[Width];
+    hn::Store(node, NumberTag(), numbers);
+    for (; lanes != 0; lanes &= lanes - 1)
+    {
+      const int number = numbers[__builtin_ctz(lanes)];
+      if (this->Brick.Error[number] == MediumBrick::Unknown)
+      {
+        this->Brick.Describe(number);
+      }
+    }
+  }
+
+  /// The cells of nodes where rays are at `t`, and where they are in these.
+  struct Places
+  {
+    Vector Cell[3];
+    Vector Within[3];
+  };
+  HWY_INLINE Places FindPlaces(const Rays& rays, const Nodes& nodes, Vector t) const
+  {
+    const F tag;
+    const Vector zero = hn::Zero(tag);
+    const Vector one = hn::Set(tag, 1.0f);
+    Places places;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector point = hn::Add(rays.Start[axis], hn::Mul(t, rays.Way[axis]));
+      const Vector last = hn::Sub(nodes.High[axis], one);
+      places.Cell[axis] = this->FindCells(axis, point, nodes.Low[axis], last, PartSteps);
+      Vector within = hn::Sub(point, this->GetPlanes(axis, places.Cell[axis]));
+      if constexpr (IsStretched)
+      {
+        within = hn::Mul(within,
+          hn::GatherIndex(
+            tag, this->Brick.Inverse[axis], hn::ConvertTo(NumberTag(), places.Cell[axis])));
+      }
+      places.Within[axis] = hn::Min(hn::Max(within, zero), one);
+    }
+    return places;
+  }
+
+  HWY_INLINE Vector Interpolate(const Vector corners[8], const Vector within[3]) const
+  {
+    const auto mix = [](Vector a, Vector b, Vector part)
+    { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
+    const Vector front = mix(
+      mix(corners[0], corners[1], within[0]), mix(corners[2], corners[3], within[0]), within[1]);
+    const Vector back = mix(
+      mix(corners[4], corners[5], within[0]), mix(corners[6], corners[7], within[0]), within[1]);
+    return this->ToPlaces(mix(front, back, within[2]));
+  }
+  /// Of values less Subtracted.
+  Vector ToPlaces(Vector values) const
+  {
+    const F tag;
+    return hn::Add(hn::Mul(values, hn::Set(tag, this->Brick.Scale)),
+      hn::Set(tag, this->Brick.Offset));
+  }
+
+  /// The samples at places, of which the function's first value is subtracted: those at eight corners of a cell, or one.
+  template <int Pairs>
+  HWY_INLINE void LoadSamples(const Vector place[3], Vector* samples) const
+  {
+    const F tag;
+    const Vector row = hn::Mul(place[1], hn::Set(tag, static_cast<float>(this->Brick.Row)));
+    const Vector slice = hn::Mul(place[2], hn::Set(tag, static_cast<float>(this->Brick.Slice)));
+    HWY_ALIGN std::int32_t offsets[Width];
+    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice)), NumberTag(),
+      offsets);
+    switch (this->Brick.Kind)
+    {
+      case MediumBrick::SampleKind::Float:
+        this->LoadPairs<float, Pairs>(offsets, samples);
+        break;
+      case MediumBrick::SampleKind::SignedByte:
+        this->LoadPairs<std::int8_t, Pairs>(offsets, samples);
+        break;
+      case MediumBrick::SampleKind::Byte:
+        this->LoadPairs<std::uint8_t, Pairs>(offsets, samples);
+        break;
+      case MediumBrick::SampleKind::SignedShort:
+        this->LoadPairs<std::int16_t, Pairs>(offsets, samples);
+        break;
+      default:
+        this->LoadPairs<std::uint16_t, Pairs>(offsets, samples);
+        break;
+    }
+  }
+  template <class T, int Pairs>
+  HWY_INLINE void LoadPairs(const std::int32_t* offsets, Vector* samples) const
+  {
+    const F tag;
+    const Vector subtracted = hn::Set(tag, this->Brick.Subtracted);
+    for (int pair = 0; pair < (Pairs == 0 ? 1 : Pairs); ++pair)
+    {
+      const T* const first = static_cast<const T*>(this->Brick.Samples) +
+        (pair & 1) * this->Brick.Row + (pair >> 1) * this->Brick.Slice;
+      const auto load = [&](int side)
+      {
+        if constexpr (std::is_same_v<T, float>)
+        {
+          return SetLanes<float, Width>([&](int lane) { return first[offsets[lane] + side]; });
+        }
+        else
+        {
+          const auto whole = SetLanes<std::int32_t, Width>(
+            [&](int lane) { return std::int32_t{ first[offsets[lane] + side] }; });
+          return hn::ConvertTo(tag, whole);
+        }
+      };
+      samples[2 * pair] = hn::Sub(load(0), subtracted);
+      if constexpr (Pairs != 0)
+      {
+        samples[2 * pair + 1] = hn::Sub(load(1), subtracted);
+      }
+    }
+  }
+
+  HWY_INLINE Vector FindValues(const Places& places) const
+  {
+    Vector corners[8];
+    this->LoadSamples<4>(places.Cell, corners);
+    return this->Interpolate(corners, places.Within);
+  }
+
+  /// Takes rays that see something through their nodes. `value`: where they are, of those that have one.
+  HWY_INLINE void Step(const Rays& rays, const Nodes& nodes, Numbers node, Mask joined,
+    Mask visible, Vector& value, Mask& hasValue)
+  {
+    const F tag;
+    const Vector half = hn::Set(tag, 0.5f);
+    typename Pieces::Ways ways;
+    ways.Begin = rays.T;
+    ways.End = nodes.Exit;
+    ways.Length = hn::Mul(hn::Sub(nodes.Exit, rays.T), rays.Length);
+    ways.Cubic = hn::Zero(tag);
+    const Places middle =
+      this->FindPlaces(rays, nodes, hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+    if (this->Brick.IsNearest)
+    {
+      ways.Middle = this->FindNearest(middle.Cell);
+      ways.First = ways.Middle;
+      ways.Last = ways.Middle;
+    }
+    else
+    {
+      Vector corners[8];
+      this->LoadSamples<4>(middle.Cell, corners);
+      ways.Middle = this->Interpolate(corners, middle.Within);
+      ways.First = value;
+      if (!hn::AllFalse(tag, hn::AndNot(hasValue, visible)))
+      {
+        ways.First = hn::IfThenElse(
+          hasValue, value, this->FindValues(this->FindPlaces(rays, nodes, rays.T)));
+      }
+      ways.Last = this->FindValues(this->FindPlaces(rays, nodes, nodes.Exit));
+      const Mask cells = hn::AndNot(joined, visible);
+      if (!hn::AllFalse(tag, cells))
+      {
+        this->SetCubics(rays, nodes, cells, corners, ways);
+      }
+    }
+    // Neither is a value that is not finite.
+    Mask there = hn::And(
+      visible, hn::Eq(hn::Sub(ways.Middle, ways.Middle), hn::Zero(tag)));
+    if (this->Brick.Mask)
+    {
+      there = hn::And(there, this->FindCovered(middle.Cell, there));
+    }
+    const Vector change = hn::GatherIndex(tag, this->Brick.Change, node);
+    const Vector deep = hn::GatherIndex(tag, this->Brick.Deep, node);
+    this->Ways.Add(ways, there, { change, deep });
+    value = ways.Last;
+    hasValue = there;
+  }
+
+  /// Along a ray in a cell, values are a cubic.
+  HWY_INLINE void SetCubics(const Rays& rays, const Nodes& nodes, Mask cells,
+    const Vector corners[8], typename Pieces::Ways& ways) const
+  {
+    const F tag;
+    const Vector quarter = hn::Set(tag, 0.25f);
+    const Vector t = hn::Add(rays.T, hn::Mul(quarter, hn::Sub(nodes.Exit, rays.T)));
+    const Vector value = this->Interpolate(corners, this->FindPlaces(rays, nodes, t).Within);
+    const Vector twice = hn::Add(ways.Middle, ways.Middle);
+    // The quadratic at 1 / 4.
+    const Vector bend = hn::Sub(hn::Add(ways.First, ways.Last), twice);
+    const Vector line =
+      hn::Add(ways.First, hn::Mul(quarter, hn::Sub(ways.Last, ways.First)));
+    const Vector quadratic = hn::Sub(line, hn::Mul(hn::Set(tag, 0.375f), bend));
+    const Vector cubic =
+      hn::Mul(hn::Sub(value, quadratic), hn::Set(tag, static_cast<float>(64.0 / 3.0)));
+    ways.Cubic = hn::IfThenElseZero(cells, cubic);
+  }
+
+  HWY_INLINE Vector FindNearest(const Vector cell[3]) const
+  {
+    const F tag;
+    Vector place[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place[axis] = hn::Floor(
+        hn::Mul(hn::Add(cell[axis], hn::Set(tag, 1.0f)), hn::Set(tag, 0.5f)));
+    }
+    Vector sample;
+    this->LoadSamples<0>(place, &sample);
+    return this->ToPlaces(sample);
+  }
+
+  /// Those of `rays` whose cells the mask lets hold data.
+  HWY_NOINLINE Mask FindCovered(const Vector cell[3], Mask rays) const
+  {
+    const F tag;
+    HWY_ALIGN float places[3][Width];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hn::Store(cell[axis], tag, places[axis]);
+    }
+    std::uint32_t covered = 0;
+    for (std::uint32_t left = GetMaskBits(tag, rays); left != 0; left &= left - 1)
+    {
+      const int lane = __builtin_ctz(left);
+      const auto get = [&](int axis) { return static_cast<int>(places[axis][lane] / this->Fine); };
+      const int number = get(0) + this->Brick.Cells[0] * (get(1) + this->Brick.Cells[1] * get(2));
+      covered |= static_cast<std::uint32_t>(this->Brick.Mask[number >> 3] >> (number & 7) & 1)
+        << lane;
+    }
+    return GetBitMask(tag, covered);
+  }
+
+  /// Takes rays to the nodes behind theirs. Returns those of `open` that are still in the brick.
+  HWY_INLINE Mask GoOn(Rays& rays, const Nodes& nodes, Mask open) const
+  {
+    const F tag;
+    const Vector one = hn::Set(tag, 1.0f);
+    rays.T = nodes.Exit;
+    open = hn::And(open, hn::Lt(rays.T, one));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector point = hn::Add(rays.Start[axis], hn::Mul(rays.T, rays.Way[axis]));
+      const Vector inside = this->FindCells(
+        axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), PartSteps);
+      const Vector next =
+        this->Packet.Forward[axis] ? nodes.High[axis] : hn::Sub(nodes.Low[axis], one);
+      rays.Cell[axis] =
+        hn::IfThenElse(hn::Le(nodes.Leave[axis], rays.T), next, inside);
+      open = hn::And(open,
+        hn::And(hn::Ge(rays.Cell[axis], hn::Zero(tag)),
+          hn::Lt(rays.Cell[axis], hn::Set(tag, this->Count[axis]))));
+    }
+    return open;
+  }
+
+  const RayPacket& Packet;
+  MediumBrick& Brick;
+  MediumLight& Light;
+  Pieces Ways;
+  float Fine; ///< coordinates in a cell
+  double Origin[3];
+  float Count[3];
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_TypedMediumBrick_h
+#define rt_TypedMediumBrick_h
+
+#include "DSMBricks/layout/BrickBends.h"
+#include "DSMBricks/layout/GridPlanes.h"
+#include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/lattice/MacrocellKernel.h"
+#include "DSMRayTracing/field/lattice/MediumBrick.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+namespace rt
+{
+
+/// Memory of a worker for the brick that it is in.
+struct MediumBrickMemory
+{
+  std::vector<float> Samples;
+  std::vector<float> Error;
+  std::vector<float> Change;
+  std::vector<float> Deep;
+  std::vector<float> Planes[3];
+  std::vector<float> Inverse[3];
+};
+
+/// A MediumBrick of samples of type T. Keeps references.
+template <class T>
+class TypedMediumBrick final : public MediumBrick
+{
+public:
+  /// `planes`: of a rectilinear grid, or null; `origin`: the brick's first cell there.
+  TypedMediumBrick(const bricks::VoxelBrick<T>& brick, const TransferFunction& function,
+    bool isNearest, const bricks::GridPlanes* planes, const double origin[3],
+    const MacrocellKernel& kernel, MediumBrickMemory& memory)
+    : Brick(brick)
+    , Function(function)
+    , Grid(planes)
+    , Kernel(kernel)
+    , Memory(memory)
+  {
+    this->Row = brick.GetRow();
+    this->Slice = brick.GetSlice();
+    this->IsNearest = isNearest;
+    this->Mask = brick.GetMask();
+    int parts = 1;
+    int macrocells = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Cells[axis] = brick.GetCells(axis);
+      this->Macrocells[axis] = brick.GetMacrocells(axis);
+      this->Parts[axis] = (brick.GetCells(axis) + PartCells - 1) / PartCells;
+      parts *= this->Parts[axis];
+      macrocells *= this->Macrocells[axis];
+      this->First[axis] = static_cast<std::size_t>(origin[axis]);
+      this->SetPlanes(axis);
+    }
+    this->FirstMacrocell = parts;
+    const auto nodes = static_cast<std::size_t>(parts + macrocells);
+    memory.Error.assign(nodes, Unknown);
+    memory.Change.resize(std::max(memory.Change.size(), nodes));
+    memory.Deep.resize(memory.Change.size());
+    this->Error = memory.Error.data();
+    this->Change = memory.Change.data();
+    this->Deep = memory.Deep.data();
+    this->SetSamples();
+  }
+
+  void Describe(int node) override
+  {
+    const bool isPart = node < this->FirstMacrocell;
+    const int* const counts = isPart ? this->Parts : this->Macrocells;
+    const int number = isPart ? node : node - this->FirstMacrocell;
+    const std::array<int, 3> place{ number % counts[0], number / counts[0] % counts[1],
+      number / (counts[0] * counts[1]) };
+    const bricks::MacrocellRange<T> range =
+      isPart ? this->FindPartRange(place) : this->Brick.GetMacrocellRanges()[number];
+    const auto at = static_cast<std::size_t>(node);
+    if (!(range.Min <= range.Max) ||
+      !this->Function.IsSeen(static_cast<double>(range.Min), static_cast<double>(range.Max)))
+    {
+      this->Memory.Error[at] = Unseen;
+      return;
+    }
+    const TransferFunction::Behavior behavior =
+      this->Function.FindBehavior(this->Function.GetPlace(static_cast<double>(range.Min)),
+        this->Function.GetPlace(static_cast<double>(range.Max)));
+    this->Memory.Change[at] = static_cast<float>(behavior.Change);
+    this->Memory.Deep[at] = static_cast<float>(behavior.Extinction * behavior.Tinge);
+    double bend = std::numeric_limits<double>::infinity();
+    if (this->IsNearest)
+    {
+      bend = range.Min < range.Max || this->Mask ? bend : 0.0;
+    }
+    else if (!this->Grid)
+    {
+      bend = bricks::GetBend(this->Brick.GetHeader(), isPart, number);
+    }
+    else if (!isPart && !this->Mask)
+    {
+      bend = this->FindStretchedBend(place);
+    }
+    this->Memory.Error[at] = 
+      static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
+    if (std::isnan(this->Memory.Error[at])) // no change, of a bend that is not known
+    {
+      this->Memory.Error[at] = std::numeric_limits<float>::infinity();
+    }
+  }
+
+private:
+  void SetPlanes(int axis)
+  {
+    this->Planes[axis] = nullptr;
+    this->Inverse[axis] = nullptr;
+    if (!this->Grid)
+    {
+      return;
+    }
+    const double* const places = this->Grid->GetPlaces(axis) + this->First[axis];
+    const int pieces = this->IsNearest ? 2 : 1;
+    std::vector<float>& own = this->Memory.Planes[axis];
+    std::vector<float>& inverse = this->Memory.Inverse[axis];
+    own.clear();
+    inverse.clear();
+    for (int cell = 0; cell < this->Cells[axis]; ++cell)
+    {
+      const double width = (places[cell + 1] - places[cell]) / pieces;
+      for (int piece = 0; piece < pieces; ++piece)
+      {
+        own.push_back(static_cast<float>(places[cell] - places[0] + piece * width));
+        inverse.push_back(width > 0.0 ? static_cast<float>(1.0 / width) : 0.0f);
+      }
+    }
+    own.push_back(static_cast<float>(places[this->Cells[axis]] - places[0]));
+    this->Planes[axis] = own.data();
+    this->Inverse[axis] = inverse.data();
+  }
+
+  void SetSamples()
+  {
+    const double origin = this->Function.GetOrigin();
+    const double scale = this->Function.GetScale();
+    this->Samples = this->Brick.GetSamples();
+    this->Subtracted = static_cast<float>(origin);
+    this->Scale = static_cast<float>(scale);
+    this->Offset = static_cast<float>((static_cast<double>(this->Subtracted) - origin) * scale);
+    this->Kind = SampleKind::Float;
+    constexpr double largest = 1e30; // far from what a float can hold
+    const bool fits = scale < largest && scale > 1.0 / largest && std::abs(origin) < largest;
+    if constexpr (std::is_same_v<T, float>)
+    {
+      if (fits)
+      {
+        return;
+      }
+    }
+    else if constexpr (std::is_integral_v<T> && sizeof(T) <= 2)
+    {
+      if (fits)
+      {
+        this->Kind = sizeof(T) == 1
+          ? (std::is_signed_v<T> ? SampleKind::SignedByte : SampleKind::Byte)
+          : (std::is_signed_v<T> ? SampleKind::SignedShort : SampleKind::Short);
+        return;
+      }
+    }
+    this->Memory.Samples.resize(
+      static_cast<std::size_t>(this->Slice) * static_cast<std::size_t>(this->Cells[2] + 1));
+    std::transform(this->Brick.GetSamples(), this->Brick.GetSamples() + this->Memory.Samples.size(),
+      this->Memory.Samples.begin(),
+      [&](T sample) { return static_cast<float>((static_cast<double>(sample) - origin) * scale); });
+    this->Samples = this->Memory.Samples.data();
+    this->Subtracted = 0.0f;
+    this->Scale = 1.0f;
+    this->Offset = 0.0f;
+  }
+
+  bricks::MacrocellRange<T> FindPartRange(const std::array<int, 3>& part) const
+  {
+    constexpr int edge = PartCells / MacrocellCells;
+    int last[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      last[axis] =
+        std::min(edge * (part[static_cast<std::size_t>(axis)] + 1), this->Macrocells[axis]);
+    }
+    bricks::MacrocellRange<T> all{ std::numeric_limits<T>::max(), std::numeric_limits<T>::lowest() };
+    for (int z = edge * part[2]; z < last[2]; ++z)
+    {
+      for (int y = edge * part[1]; y < last[1]; ++y)
+      {
+        const bricks::MacrocellRange<T>* const row = this->Brick.GetMacrocellRanges() +
+          this->Macrocells[0] * (y + this->Macrocells[1] * z);
+        for (int x = edge * part[0]; x < last[0]; ++x)
+        {
+          all.Min = std::min(all.Min, row[x].Min);
+          all.Max = std::max(all.Max, row[x].Max);
+        }
+      }
+    }
+    return all;
+  }
+
+  /// How far values along a ray through a rectilinear macrocell may be from a quadratic: trilinear values are by as
+  /// much as from any smooth curve, an eighth of how much they bend in a cell.
+  double FindStretchedBend(const std::array<int, 3>& macrocell) const
+  {
+    int first[3];
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      first[axis] = MacrocellCells * macrocell[static_cast<std::size_t>(axis)];
+      counts[axis] = std::min(MacrocellCells, this->Cells[axis] - first[axis]);
+    }
+    MacrocellSamples samples;
+    if (!samples.Set(this->Brick, first, counts))
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      samples.SetWidths(axis,
+        this->Grid->GetInverseWidths(axis) + this->First[axis] +
+          static_cast<std::size_t>(first[axis]));
+    }
+    return 0.125 * this->Kernel.FindRoughness(samples);
+  }
+
+  const bricks::VoxelBrick<T>& Brick;
+  const TransferFunction& Function;
+  const bricks::GridPlanes* Grid;
+  const MacrocellKernel& Kernel;
+  MediumBrickMemory& Memory;
+  std::size_t First[3]; ///< the brick's first cell
+};
+
+} // namespace rt
+
+#endif
