@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-std::vector<Position> GetPositions(const BenchmarkOptions& options)
+std::vector<Position> GetPositions(const VolumeOptions& options)
 {
   std::vector<Position> positions;
   if (options.Session.empty())
@@ -42,14 +42,14 @@ std::vector<Position> GetPositions(const BenchmarkOptions& options)
   return positions;
 }
 
-Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Position& position)
+Camera GetCamera(const rt::LatticeField& field, double aspect, const Position& position)
 {
-  const glm::dvec3 last(object.Field.Voxels->Lattice.GetCells());
-  const glm::dvec3 center(object.Field.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
+  const glm::dvec3 last(field.Voxels->Lattice.GetCells());
+  const glm::dvec3 center(field.IndexToWorld * glm::dvec4(0.5 * last, 1.0));
   glm::dvec3 halfExtents(0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(object.Field.IndexToWorld[axis]));
+    halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(field.IndexToWorld[axis]));
   }
   const double distance =
     position.Distance * std::max({ halfExtents.x, halfExtents.y, halfExtents.z });
@@ -62,4 +62,34 @@ Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Posit
              distance + radius) *
       glm::lookAt(center + distance * outward, center, glm::dvec3(0.0, 1.0, 0.0)),
     -outward };
+}
+
+rt::FrameRequest CreateRequest(const VolumeOptions& options, const Camera& camera)
+{
+  rt::FrameRequest request;
+  request.Width = options.Width;
+  request.Height = options.Height;
+  request.TileSize = options.TileSize;
+  request.Samples = options.Samples;
+  request.WorldToClip = camera.WorldToClip;
+  request.Scheduling = options.Scheduling;
+  return request;
+}
+
+rt::LightTransport CreateTransport(const VolumeOptions& options, const rt::LatticeField& field)
+{
+  rt::LightTransport transport;
+  transport.Shadows = options.Shadows;
+  transport.AmbientOcclusionSamples = options.Occlusion;
+  transport.AmbientOcclusionDistance = 0.2 *
+    glm::length(glm::dmat3(field.IndexToWorld) * glm::dvec3(field.Voxels->Lattice.GetCells()));
+  return transport;
+}
+
+rt::Light CreateLamp(const VolumeOptions& options, const Camera& camera)
+{
+  const glm::dvec3 aside = glm::cross(camera.ViewDirection, glm::dvec3(0.0, 0.0, 1.0));
+  rt::Light lamp;
+  lamp.Direction = glm::normalize(camera.ViewDirection + (options.Shadows ? 0.7 : 0.0) * aside);
+  return lamp;
 }

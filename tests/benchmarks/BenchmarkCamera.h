@@ -2,7 +2,7 @@
 #ifndef BenchmarkCamera_h
 #define BenchmarkCamera_h
 
-#include "BenchmarkOptions.h"
+#include "VolumeOptions.h"
 
 #include "DSMRayTracing/scene/Scene.h"
 
@@ -21,7 +21,7 @@ struct Position
 };
 
 /// An orbit, or what the session's file says. Every rank reads it. Throws dsm::Error.
-std::vector<Position> GetPositions(const BenchmarkOptions& options);
+std::vector<Position> GetPositions(const VolumeOptions& options);
 
 struct Camera
 {
@@ -30,6 +30,12 @@ struct Camera
 };
 
 /// Looks at the volume's center, view angle 30 degrees.
-Camera GetCamera(const rt::LatticeIsosurface& object, double aspect, const Position& position);
+Camera GetCamera(const rt::LatticeField& field, double aspect, const Position& position);
+
+/// The picture that a camera takes, and the light in it. Shadows come from a lamp beside the camera, else the lamp is
+/// at the camera.
+rt::FrameRequest CreateRequest(const VolumeOptions& options, const Camera& camera);
+rt::LightTransport CreateTransport(const VolumeOptions& options, const rt::LatticeField& field);
+rt::Light CreateLamp(const VolumeOptions& options, const Camera& camera);
 
 #endif

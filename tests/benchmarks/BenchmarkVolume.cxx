@@ -21,6 +21,7 @@
 #include <cstring>
 #include <map>
 #include <sstream>
+#include <thread>
 
 namespace
 {
@@ -191,7 +192,13 @@ bool EndsWith(const std::string& text, const std::string& end)
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Cells [count * part / parts, count * (part + 1) / parts) along an axis of the box.
+Input CreateInput(const std::string& description, int rank, int ranks)
+{
+  return EndsWith(description, ".vti") ? ReadVolume(description, rank, ranks)
+                                       : GenerateVolume(description);
+}
+
+/// Indices [count * part / parts, count * (part + 1) / parts) along an axis of the box.
 bricks::Box CutAlong(int axis, const bricks::Box& box, std::int64_t part, std::int64_t parts)
 {
   bricks::Box piece = box;
@@ -212,12 +219,7 @@ rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int
   }
   Input input;
   messenger.RunTogether("Reading the volume",
-    [&]
-    {
-      input = EndsWith(description, ".vti")
-        ? ReadVolume(description, messenger.GetRank(), messenger.GetSize())
-        : GenerateVolume(description);
-    });
+    [&] { input = CreateInput(description, messenger.GetRank(), messenger.GetSize()); });
   const bricks::BrickLattice lattice(input.Points, input.Type, /*cellMask=*/false,
     brickEdge > 0 ? brickEdge : bricks::BrickLattice::GetDefaultEdge(input.Type));
 
@@ -241,4 +243,36 @@ rt::LatticeIsosurface PublishBenchmarkVolume(const std::string& description, int
   field->Planes = input.Planes;
   object.Field.Voxels = field;
   return object;
+}
+
+BenchmarkSamples ReadBenchmarkSamples(const std::string& description, int threads)
+{
+  if (vol::MayBeVolumeFile(description))
+  {
+    throw dsm::Error(
+      "'" + description + "' is not read as a whole. Name a sample volume or a .vti file.");
+  }
+  const Input input = CreateInput(description, 0, 1);
+  if (input.Planes)
+  {
+    throw dsm::Error("'" + description + "' has planes in tables. Name a volume without.");
+  }
+  const bricks::Box points{ bricks::Index3(0), input.Points };
+  const auto source = input.CreatePiece({ bricks::Index3(0), input.Points - bricks::Index3(1) });
+  const std::size_t plane =
+    static_cast<std::size_t>(input.Points.x * input.Points.y) * bricks::GetBytes(input.Type);
+  BenchmarkSamples samples{ input.Points, input.Type, input.IndexToWorld,
+    std::vector<std::byte>(plane * static_cast<std::size_t>(input.Points.z)) };
+  std::vector<std::thread> readers;
+  for (int thread = 0; thread < threads; ++thread)
+  {
+    const bricks::Box slab = CutAlong(2, points, thread, threads);
+    std::byte* const out = samples.Bytes.data() + plane * static_cast<std::size_t>(slab.Min.z);
+    readers.emplace_back([=] { source->ReadSamples(slab, out); });
+  }
+  for (std::thread& reader : readers)
+  {
+    reader.join();
+  }
+  return samples;
 }

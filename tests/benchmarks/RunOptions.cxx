@@ -3,8 +3,18 @@
 
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <vector>
+
+const std::map<std::string, dsm::MemoryOrganization>& RunOptions::GetStores()
+{
+  static const std::map<std::string, dsm::MemoryOrganization> stores{
+    { "automatic", dsm::MemoryOrganization::Automatic },
+    { "replicated", dsm::MemoryOrganization::Replicated },
+    { "object", dsm::MemoryOrganization::ObjectBased },
+    { "paged", dsm::MemoryOrganization::PageBased }
+  };
+  return stores;
+}
 
 void RunOptions::AddTo(CLI::App& app)
 {
@@ -32,11 +42,7 @@ void RunOptions::AddTo(CLI::App& app)
     ->capture_default_str()
     ->check(CLI::NonNegativeNumber);
   app.add_option("--store", this->Store, "default object")
-    ->transform(CLI::CheckedTransformer(std::map<std::string, dsm::MemoryOrganization>{
-      { "automatic", dsm::MemoryOrganization::Automatic },
-      { "replicated", dsm::MemoryOrganization::Replicated },
-      { "object", dsm::MemoryOrganization::ObjectBased },
-      { "paged", dsm::MemoryOrganization::PageBased } }));
+    ->transform(CLI::CheckedTransformer(GetStores()));
   app.add_option("--host-sharing", this->HostSharing,
     "on: ranks of one host read one another's bricks in place; off (default): one machine plays "
     "many hosts, as the paper's figures need");

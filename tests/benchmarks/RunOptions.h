@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <map>
 #include <string>
 
 /// What all benchmarks that trace frames are told.
@@ -25,6 +26,8 @@ struct RunOptions
   rt::TileScheduling Scheduling = rt::TileScheduling::WorkStealing;
   double Latency = 0.0; ///< microseconds that are added to every message's way
   std::string Json;     ///< file, or - for standard output; empty: none
+
+  static const std::map<std::string, dsm::MemoryOrganization>& GetStores();
 
   /// Adds the options that change this object.
   void AddTo(CLI::App& app);

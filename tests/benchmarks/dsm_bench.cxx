@@ -5,7 +5,9 @@
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
 #include "DelayedTransport.h"
+#include "MediumBenchmark.h"
 #include "MeshBenchmark.h"
+#include "PictureFile.h"
 
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/LoopbackTransport.h"
@@ -37,20 +39,6 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-void WritePicture(const rt::Picture& picture, const std::string& path)
-{
-  std::ofstream file(path, std::ios::binary);
-  file << "P6\n" << picture.Width << ' ' << picture.Height << "\n255\n";
-  for (int y = picture.Height - 1; y >= 0; --y)
-  {
-    for (int x = 0; x < picture.Width; ++x)
-    {
-      const std::size_t pixel = static_cast<std::size_t>(y) * picture.Width + x;
-      file.write(reinterpret_cast<const char*>(&picture.Color[4 * pixel]), 3);
-    }
-  }
-}
 
 /// What one rank did and holds.
 struct RankResult
@@ -238,24 +226,6 @@ std::vector<double> SumTileSeconds(dsm::Messenger& messenger, const std::vector<
   return sums;
 }
 
-/// Blue to red over the range of values; a cell's edge is the unit of opacity.
-rt::LatticeMedium CreateMedium(const rt::LatticeField& field, const std::vector<double>& medium)
-{
-  const double cell = field.GetFinestLength();
-  const double first = medium[0];
-  const double last = medium[1];
-  const auto look = [&](double value)
-  {
-    const double part = (value - first) / (last - first);
-    const double opacity = std::min(part * medium[2], 0.9999);
-    return glm::dvec4(part, 0.3, 1.0 - part, -std::log1p(-opacity) / cell);
-  };
-  rt::LatticeMedium result;
-  result.Field = field;
-  result.Function = rt::TransferFunction::Create(first, last, look, {}, 0.0, cell);
-  return result;
-}
-
 void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
 {
   dsm::BlockStore::Settings settings = options.CreateSettings(messenger);
@@ -269,42 +239,24 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   object.Isovalues = options.Isovalues;
   std::sort(object.Isovalues.begin(), object.Isovalues.end());
   object.Look.Surface.Opacity = options.Opacity;
-  if (!options.Medium.empty())
-  {
-    object.Isovalues.clear();
-    scene.Media.emplace_back(CreateMedium(object.Field, options.Medium));
-  }
   settings.CacheBytes = static_cast<std::size_t>(
     options.CacheFraction * object.Field.Voxels->Segment->GetDirectory().GetTotalBytes());
   store.SetSettings(settings);
 
   rt::FrameRenderer renderer(messenger);
   scene.Lights.emplace_back();
-  scene.Transport.Shadows = options.Shadows;
-  scene.Transport.AmbientOcclusionSamples = options.Occlusion;
-  scene.Transport.AmbientOcclusionDistance = 0.2 *
-    glm::length(
-      glm::dmat3(object.Field.IndexToWorld) * glm::dvec3(object.Field.Voxels->Lattice.GetCells()));
+  scene.Transport = CreateTransport(options, object.Field);
   const std::vector<double> isovalues = object.Isovalues;
   const std::vector<Position> positions = GetPositions(options);
   rt::Frame frame;
   const auto trace = [&](const Position& position)
   {
     const Camera camera =
-      GetCamera(object, static_cast<double>(options.Width) / options.Height, position);
+      GetCamera(object.Field, static_cast<double>(options.Width) / options.Height, position);
     std::transform(isovalues.begin(), isovalues.end(), object.Isovalues.begin(),
       [&](double isovalue) { return position.IsovalueFactor * isovalue; });
-    const glm::dvec3 aside = glm::cross(camera.ViewDirection, glm::dvec3(0.0, 0.0, 1.0));
-    scene.Lights.front().Direction =
-      glm::normalize(camera.ViewDirection + (options.Shadows ? 0.7 : 0.0) * aside);
-    rt::FrameRequest request;
-    request.Width = options.Width;
-    request.Height = options.Height;
-    request.TileSize = options.TileSize;
-    request.Samples = options.Samples;
-    request.WorldToClip = camera.WorldToClip;
-    request.Scheduling = options.Scheduling;
-    frame = renderer.Render(store, scene, request, &frame);
+    scene.Lights.front() = CreateLamp(options, camera);
+    frame = renderer.Render(store, scene, CreateRequest(options, camera), &frame);
   };
 
   Timing timing;
@@ -424,6 +376,47 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   }
 }
 
+/// What `dsm_bench write` was asked to do.
+struct WriteOptions
+{
+  std::string Volume = "sphere:128:float";
+  std::string File;
+
+  void AddTo(CLI::App& app)
+  {
+    app.add_option("--volume", this->Volume, "a sample volume, as in isosurface")
+      ->capture_default_str();
+    app.add_option("--file", this->File, "for the samples, x fastest, as bare numbers")->required();
+  }
+};
+
+/// Writes the samples on rank 0, which also prints where they are in space. Collective.
+void WriteVolume(const WriteOptions& options, dsm::Messenger& messenger)
+{
+  const int threads = messenger.GetCoresPerRank();
+  messenger.RunTogether("Writing the volume",
+    [&]
+    {
+      if (messenger.GetRank() != 0)
+      {
+        return;
+      }
+      const BenchmarkSamples samples = ReadBenchmarkSamples(options.Volume, threads);
+      std::ofstream file(options.File, std::ios::binary);
+      file.write(reinterpret_cast<const char*>(samples.Bytes.data()),
+        static_cast<std::streamsize>(samples.Bytes.size()));
+      if (!file.flush())
+      {
+        throw dsm::Error("Cannot write '" + options.File + "'.");
+      }
+      const glm::dmat4& matrix = samples.IndexToWorld;
+      const Json result{ { "points", { samples.Points.x, samples.Points.y, samples.Points.z } },
+        { "spacing", { matrix[0][0], matrix[1][1], matrix[2][2] } },
+        { "origin", { matrix[3][0], matrix[3][1], matrix[3][2] } } };
+      std::cout << result.dump() << std::endl;
+    });
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -438,7 +431,9 @@ int main(int argc, char** argv)
   app.require_subcommand(1);
   BenchmarkOptions isosurface;
   AccessBenchmark::Options access;
+  MediumBenchmark::Options medium;
   MeshBenchmark::Options mesh;
+  WriteOptions write;
   const auto add = [&](const char* name, auto& options, const char* text, auto run)
   {
     CLI::App& benchmark = *app.add_subcommand(name, text);
@@ -453,12 +448,20 @@ int main(int argc, char** argv)
     });
   add("access", access, "the paper's Table 1",
     [&](const AccessBenchmark::Options& options) { AccessBenchmark::Run(options, messenger); });
+  add("medium", medium, "frames of a volume as a medium",
+    [&](const MediumBenchmark::Options& options)
+    {
+      network.SetLatency(1e-6 * options.Latency);
+      MediumBenchmark::Run(options, messenger);
+    });
   add("mesh", mesh, "frames of a mesh",
     [&](const MeshBenchmark::Options& options)
     {
       network.SetLatency(1e-6 * options.Latency);
       MeshBenchmark::Run(options, messenger);
     });
+  add("write", write, "the samples of a volume to a file",
+    [&](const WriteOptions& options) { WriteVolume(options, messenger); });
   try
   {
     app.parse(argc, argv);

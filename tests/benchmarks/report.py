@@ -17,7 +17,7 @@ from measuring import BENCH, HERE, SESSION, run_bench
 PROJECT = os.path.normpath(os.path.join(HERE, "..", ".."))
 ORGANIZATIONS = (("Replicated", "replicated"), ("Object based", "object"), ("Page based", "paged"))
 VOLUMES = (("noisy sphere", "sphere", 0.5), ("mixing layer", "rm", 127.5))
-MEDIA = {"noisy sphere": "0,1,0.05", "mixing layer": "0,255,0.05"}
+MEDIA = ("shell", "fog", "ramp")
 EDGES = (("1 byte", "uchar"), ("2 bytes", "short"), ("4 bytes", "float"), ("8 bytes", "double"))
 
 
@@ -59,16 +59,26 @@ def main():
           "floats, pictures of 512 x 512 pixels. Load of the machine at the start: "
           f"{os.getloadavg()[0]:.1f}.\n")
 
-    def rate(kind, store, **more):
-        result = measure(kind, options.samples, store=store, **{"frames": 10, "repeat": 2, **more})
+    def describe_rate(result):
         rays = result["rays_per_second"] / 1e6
         return f"{rays:.1f}" if rays >= 1 else f"{rays:.2f}"
+
+    def rate(kind, store):
+        return describe_rate(measure(kind, options.samples, store=store, frames=10, repeat=2))
+
+    def measure_media(kind):
+        """By function: the rates of all organizations, unshaded."""
+        name = next(name for title, name, _ in VOLUMES if title == kind)
+        media = run_bench(options.bench, 1, "medium", volume=f"{name}:{options.samples}:float", threads=cores,
+                          store=",".join(store for _, store in ORGANIZATIONS), shade="off", frames=3, repeat=2)["media"]
+        return {function: [describe_rate(medium) for medium in media if medium["function"] == function]
+                for function in MEDIA}
 
     print_table(f"Million primary rays per second, one rank, {cores} threads, all bricks in memory",
                 ("volume", *(title for title, _ in ORGANIZATIONS)),
                 [(kind, *(rate(kind, store) for _, store in ORGANIZATIONS)) for kind, _, _ in VOLUMES] +
-                [(f"{kind}, as a volume", *(rate(kind, store, medium=medium, frames=3) for _, store in ORGANIZATIONS))
-                 for kind, medium in MEDIA.items()])
+                [(f"{kind}, as a volume: {function}", *rates) for kind, _, _ in VOLUMES
+                 for function, rates in measure_media(kind).items()])
 
     def light(kind, **more):
         result = measure(kind, options.samples, store="replicated", frames=4, repeat=2, **more)
