@@ -6,9 +6,9 @@ built with:
     PYTHONPATH=build/lib/python3/dist-packages xvfb-run -a python3 tests/benchmarks/beside_volume.py
         [--kinds sphere,rm] [--samples 256,512] [--data FILE.vti] [--frames 3] [--bench build/bin/dsm_bench]
 
-The peers are vtkGPUVolumeRayCastMapper by the processor (Mesa's llvmpipe) and vtkFixedPointVolumeRayCastMapper, both with
-two samples a cell. A ratio is a peer's time over ours, each the fastest of the frames, so above 1 we are faster. Each
-frame has a camera of its own. Differences are between pictures, in 255ths, over the pixels that show anything:
+The peers are vtkGPUVolumeRayCastMapper by the processor (Mesa's llvmpipe) and vtkFixedPointVolumeRayCastMapper, both
+with two samples a cell. A ratio is a peer's time over ours, each the fastest of the frames: above 1, we are faster.
+Each frame has a camera of its own. Differences are between pictures, in 255ths, over the pixels that show anything:
 ours, and the first peer's, beside the first peer with eight times as many samples.
 """
 import argparse
@@ -95,7 +95,6 @@ class View:
     """A window with one volume, by one mapper."""
 
     def __init__(self, mapper, image, size):
-        self.mapper = mapper
         mapper.SetInputData(image)
         self.volume = vtkVolume()
         self.volume.SetMapper(mapper)
@@ -145,15 +144,16 @@ def find_difference(picture, right):
     return apart.mean(), apart.max()
 
 
-def measure(name, image, functions, options):
+def measure(volume, image, functions, options):
     cell = min(image.GetSpacing())
     values = image.GetPointData().GetScalars().GetRange()
-    views = {
-        "ours": View(vtkDSMVolumeMapper(), image, options.size),
-        "llvmpipe": View(make_sampling(vtkOpenGLGPUVolumeRayCastMapper(), cell / SAMPLES_PER_CELL), image, options.size),
-        "fixed point": View(make_sampling(vtkFixedPointVolumeRayCastMapper(), cell / SAMPLES_PER_CELL), image,
-                            options.size),
+    distance = cell / SAMPLES_PER_CELL
+    mappers = {
+        "ours": vtkDSMVolumeMapper(),
+        "llvmpipe": make_sampling(vtkOpenGLGPUVolumeRayCastMapper(), distance),
+        "fixed point": make_sampling(vtkFixedPointVolumeRayCastMapper(), distance),
     }
+    views = {name: View(mapper, image, options.size) for name, mapper in mappers.items()}
     for function, nodes in functions.items():
         for shade in (False, True):
             look = make_property(nodes, values, cell, shade)
@@ -167,13 +167,12 @@ def measure(name, image, functions, options):
                     seconds[mapper].append(view.render(7.0 * (frame + 1)))
             best = {mapper: min(each) for mapper, each in seconds.items()}
             ours, peer = views["ours"].grab(), views["llvmpipe"].grab()
-            finer = views["llvmpipe"].mapper
-            finer.SetSampleDistance(cell / SAMPLES_PER_CELL / FINER)
+            mappers["llvmpipe"].SetSampleDistance(distance / FINER)
             views["llvmpipe"].render(7.0 * options.frames)
             right = views["llvmpipe"].grab()
-            finer.SetSampleDistance(cell / SAMPLES_PER_CELL)
+            mappers["llvmpipe"].SetSampleDistance(distance)
             print("| {} | {} | {} | {:.3f} | {:.2f} | {:.2f} | {:.2f}, {:.0f} | {:.2f}, {:.0f} |".format(
-                name, function, "on" if shade else "off", best["ours"], best["llvmpipe"] / best["ours"],
+                volume, function, "on" if shade else "off", best["ours"], best["llvmpipe"] / best["ours"],
                 best["fixed point"] / best["ours"], *find_difference(ours, right), *find_difference(peer, right)),
                 flush=True)
 
