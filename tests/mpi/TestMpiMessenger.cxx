@@ -17,6 +17,7 @@ namespace
 RUN_SCENARIO(AllGatherKeepsRankOrderAndSizes)
 RUN_SCENARIO(AllGatherValueKeepsRankOrder)
 RUN_SCENARIO(BroadcastReachesAll)
+RUN_SCENARIO(ReduceCombinesTheValuesOfAllRanks)
 RUN_SCENARIO(CollectivesInARowDoNotMix)
 RUN_SCENARIO(NobodyLeavesABarrierBeforeTheLastEnters)
 RUN_SCENARIO(AgreeNamesTheLowestFailingRank)

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <new>
 #include <string>
@@ -57,6 +59,45 @@ inline void BroadcastReachesAll(dsm::Messenger& messenger)
   {
     const auto mine = messenger.GetRank() == 0 ? MakeBytes(count, 5) : MakeBytes(9, 6);
     EXPECT_EQ(messenger.Broadcast(mine), MakeBytes(count, 5));
+  }
+}
+
+/// Values of several bytes, in one piece and in many, in which no rank has all that is smallest.
+inline void ReduceCombinesTheValuesOfAllRanks(dsm::Messenger& messenger)
+{
+  using Value = std::array<float, 3>;
+  const auto make = [&](std::size_t index, int rank)
+  {
+    Value value;
+    for (std::size_t place = 0; place < value.size(); ++place)
+    {
+      value[place] = static_cast<float>(
+        (index + place + 7 * static_cast<std::size_t>(rank)) % (messenger.GetSize() * 5));
+    }
+    return value;
+  };
+  const auto takeLess = [](Value& value, const Value& other)
+  {
+    for (std::size_t place = 0; place < value.size(); ++place)
+    {
+      value[place] = std::min(value[place], other[place]);
+    }
+  };
+  for (const std::size_t count : { 0, 1, 300000 })
+  {
+    std::vector<Value> values(count);
+    std::vector<Value> expected(count);
+    for (std::size_t index = 0; index < count; ++index)
+    {
+      values[index] = make(index, messenger.GetRank());
+      expected[index] = make(index, 0);
+      for (int rank = 1; rank < messenger.GetSize(); ++rank)
+      {
+        takeLess(expected[index], make(index, rank));
+      }
+    }
+    messenger.Reduce(values, takeLess);
+    EXPECT_TRUE(values == expected) << count;
   }
 }
 

@@ -23,6 +23,7 @@ INSTANTIATE_TEST_SUITE_P(Ranks, MessengerOnLoopback, testing::Values(1, 3, 7));
 RUN_SCENARIO(AllGatherKeepsRankOrderAndSizes)
 RUN_SCENARIO(AllGatherValueKeepsRankOrder)
 RUN_SCENARIO(BroadcastReachesAll)
+RUN_SCENARIO(ReduceCombinesTheValuesOfAllRanks)
 RUN_SCENARIO(CollectivesInARowDoNotMix)
 RUN_SCENARIO(NobodyLeavesABarrierBeforeTheLastEnters)
 RUN_SCENARIO(AgreeNamesTheLowestFailingRank)

@@ -10,11 +10,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace dsm
@@ -143,6 +145,24 @@ public:
   /// a few pieces.
   void Sum(std::vector<std::uint64_t>& numbers);
 
+  /// The same with `combine(value, other)` in place of the sum, which changes the first, and does not throw. Values
+  /// are combined along a tree in any order, on which the result must not depend.
+  template <class T, class Combine>
+  void Reduce(std::vector<T>& values, const Combine& combine)
+  {
+    static_assert(std::is_trivially_copyable_v<T>);
+    this->ReduceBytes(reinterpret_cast<std::byte*>(values.data()), values.size(), sizeof(T),
+      [&](std::size_t first, const std::byte* others, std::size_t count)
+      {
+        for (std::size_t index = 0; index < count; ++index)
+        {
+          T other;
+          std::memcpy(&other, others + index * sizeof(T), sizeof(T));
+          combine(values[first + index], other);
+        }
+      });
+  }
+
   void Barrier();
 
   /// All ranks learn of the lowest rank that failed, and why. `cause` empty means success.
@@ -190,6 +210,12 @@ public:
   }
 
 private:
+  /// Combines `count` values of another rank with this rank's from the first on.
+  using Combination =
+    FunctionRef<void(std::size_t first, const std::byte* others, std::size_t count)>;
+  void ReduceBytes(
+    std::byte* values, std::size_t count, std::size_t valueBytes, Combination combine);
+
   template <class T>
   std::vector<T> DecodeParts(const std::vector<std::vector<std::byte>>& parts)
   {

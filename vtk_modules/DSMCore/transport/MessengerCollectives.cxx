@@ -370,19 +370,24 @@ std::vector<std::vector<std::byte>> Messenger::GatherPieces(
 
 void Messenger::Sum(std::vector<std::uint64_t>& numbers)
 {
-  const auto counts = this->AllGatherValue(static_cast<std::uint64_t>(numbers.size()));
+  this->Reduce(numbers, [](std::uint64_t& sum, std::uint64_t number) { sum += number; });
+}
+
+void Messenger::ReduceBytes(
+  std::byte* values, std::size_t count, std::size_t valueBytes, Combination combine)
+{
+  const auto counts = this->AllGatherValue(static_cast<std::uint64_t>(count));
   if (std::count(counts.begin(), counts.end(), counts.front()) != this->GetSize())
   {
-    throw Error("The ranks sum arrays of different lengths. Do all ranks run the same build?");
+    throw Error("The ranks combine arrays of different lengths. Do all ranks run the same build?");
   }
   Internals& self = *this->Self;
   const Tree tree(this->GetRank(), this->GetSize());
   const int children = tree.CountChildren();
-  const std::size_t count = numbers.size();
-  const std::size_t most = self.PieceBytes / sizeof(std::uint64_t);
-  std::array<std::size_t, 32> fromChild{}; // numbers that have been added
-  std::size_t up = 0;                      // whose sums over this rank and those below have gone up
-  std::size_t down = 0;                    // that are sums over all ranks
+  const std::size_t most = self.PieceBytes / valueBytes;
+  std::array<std::size_t, 32> fromChild{}; // values that have been combined
+  std::size_t up = 0;                      // that went up, combined of this rank and those below
+  std::size_t down = 0;                    // that are combined of all ranks
   std::size_t next = 0;                    // of those, who gets which next
   int nextChild = 0;
   const auto take = [&]
@@ -391,19 +396,20 @@ void Messenger::Sum(std::vector<std::uint64_t>& numbers)
     while (!self.Received.empty())
     {
       const Message& message = self.Received.front();
-      const std::size_t length = message.Payload.size() / sizeof(std::uint64_t);
+      const std::size_t length = message.Payload.size() / valueBytes;
       int child = 0;
       while (child < children && tree.GetChild(child) != message.Source)
       {
         ++child;
       }
       std::size_t& begin = child < children ? fromChild[static_cast<std::size_t>(child)] : down;
-      for (std::size_t index = 0; index < length; ++index)
+      if (child < children)
       {
-        std::uint64_t number;
-        std::memcpy(&number, message.Payload.data() + index * sizeof(number), sizeof(number));
-        std::uint64_t& sum = numbers[begin + index];
-        sum = child < children ? sum + number : number;
+        combine(begin, message.Payload.data(), length);
+      }
+      else
+      {
+        std::copy_n(message.Payload.data(), length * valueBytes, values + begin * valueBytes);
       }
       begin += length;
       self.Received.pop_front();
@@ -411,10 +417,7 @@ void Messenger::Sum(std::vector<std::uint64_t>& numbers)
     return any;
   };
   const auto post = [&](int destination, std::size_t first, std::size_t length)
-  {
-    self.PostCopy(destination, reinterpret_cast<const std::byte*>(numbers.data() + first),
-      length * sizeof(std::uint64_t));
-  };
+  { self.PostCopy(destination, values + first * valueBytes, length * valueBytes); };
   const auto send = [&]
   {
     const std::size_t ready =

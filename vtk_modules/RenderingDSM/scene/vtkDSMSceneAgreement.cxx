@@ -52,32 +52,57 @@ T Read(const std::vector<std::byte>& bytes, std::size_t at = 0)
   return value;
 }
 
-/// Adds a picture of depths, behind `first` others in a record, to those of each pixel's surfaces: the nearest
-/// first, and at most vtkDSMDepthReader::MaxSurfaces of them.
-void AddCuts(const std::vector<std::byte>& record, std::size_t first, std::size_t pixels,
-  std::vector<float>& cuts)
+/// Depths of the surfaces of a pixel: the nearest first, then 1.
+using SurfaceDepths = std::array<float, vtkDSMDepthReader::MaxSurfaces>;
+
+/// Merges two lists; of all depths that differ, the nearest are kept.
+void AddSurfaces(SurfaceDepths& depths, const SurfaceDepths& others)
 {
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+  for (float depth : others)
   {
-    auto depth = Read<float>(record, (first + pixel) * sizeof(float));
-    for (std::size_t place = pixel; depth < 1.0f; place += pixels)
+    for (float& place : depths)
     {
-      if (place >= pixels * vtkDSMDepthReader::MaxSurfaces)
+      if (depth == place)
       {
         break;
       }
-      cuts.resize(std::max(cuts.size(), place - pixel + pixels), 1.0f);
-      // Ranks may draw the same surface.
-      if (std::abs(depth - cuts[place]) <= vtkDSMDepthReader::SurfaceDistance)
+      if (depth < place)
       {
-        break;
-      }
-      if (depth < cuts[place])
-      {
-        std::swap(depth, cuts[place]);
+        std::swap(depth, place);
       }
     }
   }
+}
+
+/// Pictures that follow one another, as vtkDSMDepthReader::ReadTranslucent returns them, as lists.
+void TakeSurfaces(const std::vector<float>& pictures, std::vector<SurfaceDepths>& depths)
+{
+  for (std::size_t at = 0; at < pictures.size(); ++at)
+  {
+    depths[at % depths.size()][at / depths.size()] = pictures[at];
+  }
+}
+
+/// The reverse, as FrameRequest::MediumCuts. Ranks may draw the same surface.
+std::vector<float> ToCuts(const std::vector<SurfaceDepths>& depths)
+{
+  const std::size_t pixels = depths.size();
+  std::vector<float> cuts;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+  {
+    float last = -1.0f;
+    std::size_t place = pixel;
+    for (const float depth : depths[pixel])
+    {
+      if (depth < 1.0f && depth - last > vtkDSMDepthReader::SurfaceDistance)
+      {
+        cuts.resize(std::max(cuts.size(), place - pixel + pixels), 1.0f);
+        cuts[place] = last = depth;
+        place += pixels;
+      }
+    }
+  }
+  return cuts;
 }
 
 /// Returns whether any rank's Holdings say so.
@@ -309,49 +334,57 @@ int vtkDSMScene::Internals::AgreeOnView(
 /// at what is translucent, where `cutsMedia`.
 void vtkDSMScene::Internals::LimitRays(rt::FrameRequest& request, bool cutsMedia)
 {
+  const char* const what = "Drawing surfaces in front of volumes";
+  dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::size_t pixels = static_cast<std::size_t>(request.Width) * request.Height;
-  const auto all =
-    this->Group->GetMessenger().GatherTogether("Drawing surfaces in front of volumes",
+  std::shared_ptr<std::vector<float>> nearest;
+  std::vector<float> translucent;
+  struct Drawn
+  {
+    std::uint64_t Pixels;
+    std::uint8_t IsOpaque;
+    std::uint8_t IsTranslucent;
+  };
+  const std::vector<Drawn> all = messenger.GatherValueTogether(what,
+    [&]
+    {
+      const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
+      nearest = std::make_shared<std::vector<float>>(this->DepthReader.ReadOpaque(
+        this->Renderer, others, request.Width, request.Height, request.PixelSize));
+      const bool isOpaque = !nearest->empty();
+      nearest->resize(pixels, 1.0f);
+      if (cutsMedia)
+      {
+        translucent = this->DepthReader.ReadTranslucent(
+          this->Renderer, others, request.Width, request.Height, request.PixelSize);
+      }
+      return Drawn{ pixels, isOpaque, !translucent.empty() };
+    });
+  request.Limits = nearest;
+  const auto isAny = [&](std::uint8_t Drawn::*flag)
+  { return std::any_of(all.begin(), all.end(), [=](const Drawn& one) { return one.*flag != 0; }); };
+  if (std::any_of(
+        all.begin(), all.end(), [&](const Drawn& one) { return one.Pixels != all[0].Pixels; }))
+  {
+    return; // a rank whose picture has another size is refused later
+  }
+  if (isAny(&Drawn::IsOpaque))
+  {
+    messenger.Reduce(*nearest, [](float& depth, float other) { depth = std::min(depth, other); });
+  }
+  if (isAny(&Drawn::IsTranslucent))
+  {
+    std::vector<SurfaceDepths> depths;
+    messenger.RunTogether(what,
       [&]
       {
-        const std::vector<vtkProp*> others = this->Members.FindOthers(this->Renderer);
-        std::vector<float> own = this->DepthReader.ReadOpaque(
-          this->Renderer, others, request.Width, request.Height, request.PixelSize);
-        const std::vector<float> translucent = cutsMedia
-          ? this->DepthReader.ReadTranslucent(
-              this->Renderer, others, request.Width, request.Height, request.PixelSize)
-          : std::vector<float>();
-        if (!translucent.empty())
-        {
-          own.resize(pixels, 1.0f);
-          own.insert(own.end(), translucent.begin(), translucent.end());
-        }
-        const auto* const bytes = reinterpret_cast<const std::byte*>(own.data());
-        return std::vector<std::byte>(bytes, bytes + own.size() * sizeof(float));
+        SurfaceDepths none;
+        none.fill(1.0f);
+        depths.assign(pixels, none);
+        TakeSurfaces(translucent, depths);
       });
-  auto nearest = std::make_shared<std::vector<float>>(pixels, 1.0f);
-  std::vector<float> cuts;
-  for (const std::vector<std::byte>& bytes : all)
-  {
-    // A rank whose picture has another size is refused later.
-    const std::size_t pictures = bytes.size() / sizeof(float) / std::max<std::size_t>(pixels, 1);
-    if (bytes.size() != pictures * pixels * sizeof(float))
-    {
-      continue;
-    }
-    for (std::size_t pixel = 0; pictures > 0 && pixel < pixels; ++pixel)
-    {
-      (*nearest)[pixel] = std::min((*nearest)[pixel], Read<float>(bytes, pixel * sizeof(float)));
-    }
-    for (std::size_t picture = 1; picture < pictures; ++picture)
-    {
-      AddCuts(bytes, picture * pixels, pixels, cuts);
-    }
-  }
-  request.Limits = std::move(nearest);
-  if (!cuts.empty())
-  {
-    request.MediumCuts = std::make_shared<std::vector<float>>(std::move(cuts));
+    messenger.Reduce(depths, AddSurfaces);
+    request.MediumCuts = std::make_shared<std::vector<float>>(ToCuts(depths));
   }
 }
 
