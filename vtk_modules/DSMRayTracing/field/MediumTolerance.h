@@ -14,7 +14,9 @@ struct MediumTolerance
   /// Bound of the error of the optical depth of a way through several cells in one step, in which values are taken for
   /// quadratic. The bound is that of the worst ray through the worst of the cells: what pixels are off by is a
   /// hundredth of it.
-  static constexpr double Joint = 1.0 / 128.0;
+  static constexpr double Joint = 1.0 / 32.0;
+  /// Error of the light of a way that is shaded at one place.
+  static constexpr double Glare = 1.0 / 256.0;
   /// Error of the color of a piece: the front of a piece hides part of its back.
   static constexpr double Color = 1.0 / 1024.0;
   /// Pieces that are described for a unit of optical depth.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <variant>
 
 namespace rt
 {
@@ -37,6 +38,33 @@ MediumLighting::MediumLighting(const SceneTracers& tracers, const Scene& scene)
   : Transmittances(tracers)
   , World(scene)
 {
+}
+
+std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look) const
+{
+  const LightTransport& transport = this->World.Transport;
+  if (transport.Shadows || transport.AmbientOcclusionSamples > 0 ||
+    !transport.Surroundings.IsBlack())
+  {
+    return std::nullopt;
+  }
+  MediumShading shading;
+  const Material& surface = look.Surface;
+  shading.SpecularPower = surface.SpecularPower;
+  shading.HasHighlights = surface.Specular > 0.0f;
+  shading.TwoSided = transport.TwoSided;
+  for (const Light& lamp : this->World.Lights)
+  {
+    if (!std::holds_alternative<DirectionalLight>(lamp.Kind))
+    {
+      return std::nullopt;
+    }
+    shading.Lamps.push_back({ glm::vec3(lamp.Direction), surface.Diffuse * lamp.Color,
+      surface.Specular * lamp.Color });
+    (lamp.IsLoneHeadlight ? shading.Ambient : shading.AmbientOpacity) +=
+      surface.Ambient * (lamp.IsLoneHeadlight ? glm::vec3(1.0f) : lamp.AmbientColor);
+  }
+  return shading;
 }
 
 void MediumLighting::Shine(

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/frame/LightPath.h"
 #include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/MediumShading.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
 #include "DSMRayTracing/scene/Scene.h"
@@ -11,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace rt
@@ -23,6 +25,9 @@ class MediumLighting
 public:
   /// Keeps references.
   MediumLighting(const SceneTracers& tracers, const Scene& scene);
+
+  /// What is needed to shade a medium of that look while rays march through it; nothing, if that cannot be.
+  std::optional<MediumShading> FindShading(const MediumLook& look) const;
 
   /// Gives the pieces that have a look the color that they have in that light, of those of the rays that are `wanted`;
   /// each has a path.

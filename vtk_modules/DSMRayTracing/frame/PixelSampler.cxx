@@ -91,6 +91,12 @@ PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, cons
   , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
   , HasMoreChannels(channels.HasMore())
 {
+  const MediumLook* const look = this->Media.GetMarchedLook();
+  const auto shading = look ? this->LitMedia.FindShading(*look) : std::nullopt;
+  if (shading)
+  {
+    this->Media.SetShading(*shading);
+  }
 }
 
 SceneBeam PixelSampler::FindBeam(int x, int y, int width, int height) const

@@ -120,6 +120,15 @@ public:
   bool IsLit() const override { return this->Medium.Look.IsLit(); }
   bool HasLateExtinction() const override { return this->Medium.Look.Gradients != nullptr; }
 
+  const MediumLook* GetMarchedLook() const override
+  {
+    const MediumLook& look = this->Medium.Look;
+    const bool isPlain = look.Shade && look.Scattering == 0.0 && !look.Gradients && !look.Nearest;
+    return isPlain && !this->Medium.ColorValues && this->Media.CanShade(this->Medium.Field)
+      ? &look
+      : nullptr;
+  }
+
   /// Gradients hardly change within.
   double GetJoinedLength() const override
   {

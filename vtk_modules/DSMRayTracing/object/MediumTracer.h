@@ -46,6 +46,8 @@ public:
   virtual bool IsLit() const { return false; }
   virtual bool HasLateExtinction() const { return false; }
   ///@}
+  /// The look, if March itself can shade the medium with it (MediumLight::Shading); null: only Describe can.
+  virtual const MediumLook* GetMarchedLook() const { return nullptr; }
   /// Length up to which pieces may be joined before they are described, in the space of the medium
   /// (MediumLight::SetSpace).
   virtual double GetJoinedLength() const { return 0.0; }

@@ -20,6 +20,7 @@ namespace rt
 {
 
 struct MediumLook;
+struct MediumShading;
 
 /// A part of a ray within a medium. Amounts of the same part in several media add up, but for the depths of a group.
 struct MediumPiece
@@ -78,7 +79,15 @@ public:
   {
     this->WorldToSpace = worldToSpace;
     ForEachRay(wanted,
-      [&](int ray) { this->Length[ray] = glm::length(worldToSpace * rays[ray].Direction); });
+      [&](int ray)
+      {
+        this->Length[ray] = glm::length(worldToSpace * rays[ray].Direction);
+        const glm::dvec3 toViewer = -glm::normalize(rays[ray].Direction);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          this->ToViewer[axis][ray] = static_cast<float>(toViewer[axis]);
+        }
+      });
   }
   void ClearSums(RayMask wanted)
   {
@@ -169,6 +178,7 @@ public:
 
   /// For each ray:
   double Length[MaxRays];        ///< length of a unit of T, in the current medium's space
+  float ToViewer[3][MaxRays];    ///< unit, in world space
   double Transmittance[MaxRays]; ///< transmittance of all pieces so far
   double First[MaxRays];         ///< T where there is anything first; infinite: nowhere
   double Last[MaxRays];          ///< T where the last of it ends, where there is anything
@@ -186,6 +196,8 @@ public:
   bool HasLateExtinction = false;
   /// Errors that are as small as MediumTolerance says when they are multiplied by this: 1 for what a pixel shows.
   double ErrorFactor = 1.0;
+  /// Null: pieces are not shaded while rays march, or later.
+  const MediumShading* Shading = nullptr;
   /// MediumLook::Nearest of the current medium.
   bool Nearest = false;
   /// Rays with less transmittance than this end in the current medium.

@@ -149,6 +149,7 @@ void MediaMarcher::Gather(
 {
   light.Begin(rays, wanted);
   light.KeepsPieces = this->KeepsPieces;
+  light.Shading = this->Shading ? &*this->Shading : nullptr;
   for (std::size_t medium = 0; medium < this->Media.size(); ++medium)
   {
     ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam + medium].get() : nullptr;

@@ -3,12 +3,14 @@
 #define rt_MediaMarcher_h
 
 #include "DSMRayTracing/object/MediumTracer.h"
+#include "DSMRayTracing/ray/MediumShading.h"
 #include "DSMRayTracing/scene/SceneBeam.h"
 #include "DSMRayTracing/scene/SceneTracers.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <optional>
 
 namespace rt
 {
@@ -22,6 +24,19 @@ public:
   explicit MediaMarcher(const SceneTracers& tracers);
 
   bool IsEmpty() const { return this->Media.empty(); }
+
+  /// The look of the only medium, if it can be shaded while rays march through it; else null.
+  const MediumLook* GetMarchedLook() const
+  {
+    return this->Media.size() == 1 ? this->Media.front()->GetMarchedLook() : nullptr;
+  }
+  /// Shades that medium so.
+  void SetShading(const MediumShading& shading)
+  {
+    this->Shading = shading;
+    this->IsLit = false;
+    this->KeepsPieces = false;
+  }
 
   /// Finds the light that the `wanted` rays of a batch receive from media in [ray.Min, ray.Max].
   /// `beam`: contains all of the rays; null: the rays have any direction. `shine(light)` is called
@@ -59,6 +74,7 @@ private:
   std::size_t FirstBeam; ///< index in SceneBeam
   bool IsLit;            ///< true if light affects any medium
   bool KeepsPieces;
+  std::optional<MediumShading> Shading;
 };
 
 } // namespace rt

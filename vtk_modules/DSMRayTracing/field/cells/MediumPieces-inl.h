@@ -133,6 +133,37 @@ public:
     }
   }
 
+  /// Between these, what ways add is kept apart: it is shaded as a whole.
+  void BeginShaded()
+  {
+    this->IsShaded = true;
+    for (Vector& channel : this->Own)
+    {
+      channel = hn::Zero(F());
+    }
+    this->Moment = hn::Zero(F());
+    this->Before = this->Transmittance;
+  }
+  /// Where, on the mean, that is what is seen of it; `middle` where there is nothing.
+  Vector FindCenter(Vector middle) const
+  {
+    const F tag;
+    const Vector opacity = hn::Sub(this->Before, this->Transmittance);
+    return hn::IfThenElse(hn::Gt(opacity, hn::Set(tag, 1e-6f)),
+      hn::Div(this->Moment, hn::Max(opacity, hn::Set(tag, 1e-6f))), middle);
+  }
+  /// Adds it, its emission times a factor, and its opacity times another.
+  void EndShaded(const Vector ofEmission[3], const Vector ofOpacity[3])
+  {
+    const Vector opacity = hn::Sub(this->Before, this->Transmittance);
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      this->Sum[channel] = hn::Add(this->Sum[channel],
+        hn::Add(hn::Mul(this->Own[channel], ofEmission[channel]),
+          hn::Mul(opacity, ofOpacity[channel])));
+    }
+  }
+
   /// How much the pixel sees of lengths; where density is known later, at most.
   Vector GetSeen(Vector length) const
   {
@@ -468,11 +499,18 @@ private:
       this->Keep(ways, amount, passed, GetMaskBits(tag, there));
     }
     const Vector share = hn::Mul(this->Transmittance, GetSeenShare(amount[3], passed));
+    Vector* const sum = this->IsShaded ? this->Own : this->Sum;
     for (int channel = 0; channel < 3; ++channel)
     {
       // What is not there may not be a number.
-      this->Sum[channel] = hn::Add(
-        this->Sum[channel], hn::IfThenElseZero(there, hn::Mul(share, amount[channel])));
+      sum[channel] =
+        hn::Add(sum[channel], hn::IfThenElseZero(there, hn::Mul(share, amount[channel])));
+    }
+    if (this->IsShaded)
+    {
+      const Vector middle = hn::Mul(half, hn::Add(ways.Begin, ways.End));
+      this->Moment =
+        hn::Add(this->Moment, hn::Mul(hn::Sub(this->Transmittance, after), middle));
     }
     this->Transmittance = after;
     this->Nearest =
@@ -575,6 +613,13 @@ private:
   const double* Scale = nullptr;
   Vector Sum[3];
   Vector Transmittance;
+  ///@{
+  /// BeginShaded
+  bool IsShaded = false;
+  Vector Own[3];
+  Vector Moment; ///< of opacity
+  Vector Before; ///< transmittance
+  ///@}
   Vector Nearest; ///< where there is anything first
   Vector Farthest;
   ///@{

@@ -9,15 +9,20 @@
 
 #include "DSMBricks/layout/GridPlanes.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
+#include "DSMRayTracing/base/Power-inl.h"
 #include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/field/cells/MediumPieces-inl.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
+#include "DSMRayTracing/ray/MediumShading.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <hwy/highway.h>
+
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -97,6 +102,7 @@ private:
     Vector Way[3];
     Vector Inverse[3];
     Vector Length; ///< from 0 to 1, in the space of the medium
+    Vector ToViewer[3];
     Vector T;
     Vector Cell[3];
   };
@@ -117,15 +123,24 @@ private:
     while (!hn::AllFalse(tag, open))
     {
       const Vector seenLength = this->Ways.GetSeen(rays.Length);
-      const auto isJoined = [&](const Nodes& nodes, Vector error)
+      const auto isJoined = [&](const Nodes& nodes, Vector error, Numbers node)
       {
-        return hn::Le(
-          hn::Mul(error, hn::Mul(hn::Sub(nodes.Exit, rays.T), seenLength)), tolerance);
+        const Vector seen = hn::Mul(hn::Sub(nodes.Exit, rays.T), seenLength);
+        const Mask isSmooth = hn::Le(hn::Mul(error, seen), tolerance);
+        if (!this->Brick.Shading)
+        {
+          return isSmooth;
+        }
+        const Vector glare = hn::GatherIndex(tag, this->Brick.Glare, node);
+        return hn::Or(hn::Lt(error, hn::Zero(tag)),
+          hn::And(isSmooth,
+            hn::Le(hn::Mul(glare, seen),
+              hn::Set(tag, static_cast<float>(MediumTolerance::Glare)))));
       };
       Nodes nodes = this->GetNodes(rays, MediumBrick::PartCells);
       Numbers node = this->GetNumbers(nodes, MediumBrick::PartCells, this->Brick.Parts, 0);
       Vector error = this->FindErrors(node, open);
-      Mask joined = isJoined(nodes, error);
+      Mask joined = isJoined(nodes, error, node);
       if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
       {
         const Nodes smaller = this->GetNodes(rays, MediumBrick::MacrocellCells);
@@ -135,7 +150,7 @@ private:
         Choose(joined, smaller, nodes);
         node = hn::IfThenElse(hn::RebindMask(NumberTag(), joined), node, own);
         error = hn::IfThenElse(joined, error, ownError);
-        joined = isJoined(nodes, error);
+        joined = isJoined(nodes, error, node);
         if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
         {
           Choose(joined, this->GetCells(rays), nodes);
@@ -161,7 +176,7 @@ private:
     double* distance, Rays& rays) const
   {
     const F tag;
-    HWY_ALIGN float numbers[10][Width];
+    HWY_ALIGN float numbers[13][Width];
     for (int lane = 0; lane < Width; ++lane)
     {
       // Copies of one that is there stand for those that are not.
@@ -181,6 +196,10 @@ private:
           std::clamp(1.0 / (way * distance[lane] * fine), -largest, largest));
       }
       numbers[9][lane] = static_cast<float>(this->Light.Length[ray] * distance[lane]);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        numbers[10 + axis][lane] = this->Light.ToViewer[axis][ray];
+      }
     }
     const Vector zero = hn::Zero(tag);
     for (int axis = 0; axis < 3; ++axis)
@@ -188,6 +207,7 @@ private:
       rays.Start[axis] = hn::Load(tag, numbers[axis]);
       rays.Way[axis] = hn::Load(tag, numbers[3 + axis]);
       rays.Inverse[axis] = hn::Load(tag, numbers[6 + axis]);
+      rays.ToViewer[axis] = hn::Load(tag, numbers[10 + axis]);
       const Vector last = hn::Set(tag, this->Count[axis] - 1.0f);
       rays.Cell[axis] = this->FindCells(axis, rays.Start[axis], zero, last, LargestSteps);
     }
@@ -481,11 +501,157 @@ private:
     {
       there = hn::And(there, this->FindCovered(middle.Cell, there));
     }
+    for (Vector* const place : { &ways.First, &ways.Middle, &ways.Last, &ways.Cubic })
+    {
+      *place = hn::IfThenElseZero(there, *place);
+    }
     const Vector change = hn::GatherIndex(tag, this->Brick.Change, node);
     const Vector deep = hn::GatherIndex(tag, this->Brick.Deep, node);
-    this->Ways.Add(ways, there, { change, deep });
+    if (this->Brick.Shading)
+    {
+      this->Ways.BeginShaded();
+      this->Ways.Add(ways, there, { change, deep });
+      const Vector center = this->Ways.FindCenter(hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+      this->Shade(rays, this->FindPlaces(rays, nodes, center));
+    }
+    else
+    {
+      this->Ways.Add(ways, there, { change, deep });
+    }
     value = ways.Last;
     hasValue = there;
+  }
+
+  /// Central differences at the corners of cells, interpolated: what CellNeighbourhood::GetGradient finds.
+  HWY_INLINE void FindGradients(const Places& places, Vector gradient[3]) const
+  {
+    const F tag;
+    const int strides[3] = { 1, this->Brick.Row, this->Brick.Slice };
+    const auto* const samples = static_cast<const float*>(this->Brick.Samples);
+    const Vector row = hn::Mul(places.Cell[1], hn::Set(tag, static_cast<float>(strides[1])));
+    const Vector slice = hn::Mul(places.Cell[2], hn::Set(tag, static_cast<float>(strides[2])));
+    HWY_ALIGN std::int32_t offsets[Width];
+    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(places.Cell[0], row), slice)),
+      NumberTag(), offsets);
+    const auto load = [&](int offset)
+    {
+      const float* const first = samples + offset;
+      return SetLanes<float, Width>([&](int lane) { return first[offsets[lane]]; });
+    };
+    const auto mix = [](Vector a, Vector b, Vector part)
+    { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
+    Vector corners[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = load((corner & 1) + (corner >> 1 & 1) * strides[1] +
+        (corner >> 2) * strides[2]);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int u = axis == 0 ? 1 : 0;
+      const int v = axis == 2 ? 1 : 2;
+      const auto interpolate = [&](Vector a, Vector b, Vector c, Vector d)
+      {
+        return mix(mix(a, b, places.Within[u]), mix(c, d, places.Within[u]), places.Within[v]);
+      };
+      const auto getPlane = [&](int plane)
+      {
+        const int first = plane << axis;
+        return interpolate(corners[first], corners[first + (1 << u)], corners[first + (1 << v)],
+          corners[first + (1 << u) + (1 << v)]);
+      };
+      const auto loadPlane = [&](int plane)
+      {
+        const int first = plane * strides[axis];
+        return interpolate(load(first), load(first + strides[u]), load(first + strides[v]),
+          load(first + strides[u] + strides[v]));
+      };
+      const Vector lower = getPlane(0);
+      const Vector upper = getPlane(1);
+      // Next to samples that are not finite, the difference of two.
+      const auto goOn = [&](Vector beyond, Vector near, Vector other)
+      {
+        const Mask isFinite = hn::Eq(hn::Sub(beyond, beyond), hn::Zero(tag));
+        return hn::IfThenElse(isFinite, beyond, hn::Sub(hn::Add(near, near), other));
+      };
+      const Vector before = goOn(loadPlane(-1), lower, upper);
+      const Vector behind = goOn(loadPlane(2), upper, lower);
+      gradient[axis] = mix(
+        hn::Sub(upper, before), hn::Sub(behind, lower), places.Within[axis]);
+    }
+  }
+
+  /// Shades what MediumPieces has kept apart: as MediumLighting does.
+  HWY_INLINE void Shade(const Rays& rays, const Places& places)
+  {
+    const F tag;
+    const MediumShading& shading = *this->Brick.Shading;
+    const Vector zero = hn::Zero(tag);
+    Vector gradient[3];
+    this->FindGradients(places, gradient);
+    const auto dot = [](const Vector a[3], const Vector b[3])
+    { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
+    const auto set = [&](const glm::vec3& from, Vector to[3])
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        to[axis] = hn::Set(tag, from[axis]);
+      }
+    };
+    // A gradient of any size, within what squares can hold.
+    const Vector largest = hn::Max(
+      hn::Max(hn::Abs(gradient[0]), hn::Abs(gradient[1])), hn::Abs(gradient[2]));
+    const Mask isThere = hn::Gt(largest, zero);
+    const Vector unit = hn::Div(hn::Set(tag, 1.0f), hn::IfThenElse(isThere, largest, hn::Set(tag, 1.0f)));
+    for (Vector& part : gradient)
+    {
+      part = hn::Mul(part, unit);
+    }
+    Vector normal[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      Vector column[3];
+      set(glm::row(shading.ToNormal, axis), column);
+      normal[axis] = dot(column, gradient);
+    }
+    const Vector square = dot(normal, normal);
+    const Mask hasNormal = hn::And(isThere, hn::Gt(square, zero));
+    const Vector length = hn::Sqrt(hn::IfThenElse(hasNormal, square, hn::Set(tag, 1.0f)));
+    for (Vector& part : normal)
+    {
+      part = hn::IfThenElseZero(hasNormal, hn::Div(part, length));
+    }
+    const Vector towardViewer = dot(normal, rays.ToViewer);
+    Vector ofEmission[3];
+    Vector ofOpacity[3];
+    set(shading.Ambient, ofEmission);
+    set(shading.AmbientOpacity, ofOpacity);
+    for (const MediumShading::Lamp& lamp : shading.Lamps)
+    {
+      Vector direction[3];
+      set(lamp.Direction, direction);
+      const Vector along = hn::Neg(dot(normal, direction));
+      const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
+      for (int channel = 0; channel < 3; ++channel)
+      {
+        ofEmission[channel] = hn::Add(
+          ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
+      }
+      if (shading.HasHighlights)
+      {
+        const Vector twice = hn::Mul(hn::Add(along, along), towardViewer);
+        const Vector highlight = hn::Add(dot(direction, rays.ToViewer), twice);
+        const Mask shines = hn::And(hn::Gt(highlight, zero), hn::Gt(cosine, zero));
+        const Vector power =
+          hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
+        for (int channel = 0; channel < 3; ++channel)
+        {
+          ofOpacity[channel] = hn::Add(
+            ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
+        }
+      }
+    }
+    this->Ways.EndShaded(ofEmission, ofOpacity);
   }
 
   /// Along a ray in a cell, values are a cubic.
@@ -561,6 +727,10 @@ private:
       open = hn::And(open,
         hn::And(hn::Ge(rays.Cell[axis], hn::Zero(tag)),
           hn::Lt(rays.Cell[axis], hn::Set(tag, this->Count[axis]))));
+    }
+    for (Vector& cell : rays.Cell)
+    {
+      cell = hn::IfThenElseZero(open, cell); // those that are not open need cells that exist, too
     }
     return open;
   }

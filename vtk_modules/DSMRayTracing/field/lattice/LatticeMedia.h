@@ -18,6 +18,12 @@ class LatticeMedia : public VoxelMedia<LatticeField, Store>
 public:
   using VoxelMedia<LatticeField, Store>::VoxelMedia;
 
+  /// See MediumTracer::GetMarchedLook.
+  static bool CanShade(const LatticeField& field)
+  {
+    return !field.Voxels->Planes && !field.Voxels->Lattice.HasCellMask();
+  }
+
   /// See MediumTracer.
   RayMask March(const LatticeField& field, const TransferFunction& function, ObjectBeam* beam,
     const Ray* rays, RayMask wanted, MediumLight& light) const

@@ -7,6 +7,8 @@
 namespace rt
 {
 
+struct MediumShading;
+
 /// A brick of voxels as rays see it that pass through a medium: samples, and what is known of the nodes of the brick:
 /// macrocells, and parts of 4 x 4 x 4 of them. For one thread.
 ///
@@ -42,6 +44,9 @@ public:
   const float* Planes[3];
   const float* Inverse[3];
 
+  /// Null: not shaded. Else samples are floats, with one more around the brick on each side.
+  const MediumShading* Shading = nullptr;
+
   ///@{
   /// Of nodes, first those of parts, then those of macrocells, each x fastest.
   int Parts[3]; ///< in each direction
@@ -55,6 +60,8 @@ public:
   static constexpr float Unknown = -2.0f;
   const float* Change; ///< TransferFunction::Behavior
   const float* Deep;   ///< Extinction times Tinge
+  /// Error of the light of a unit of length, if a ray through the node is shaded at one place.
+  const float* Glare;
   ///@}
 
   virtual void Describe(int node) = 0;

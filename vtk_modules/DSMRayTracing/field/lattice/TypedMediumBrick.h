@@ -8,6 +8,7 @@
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/ray/MediumShading.h"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +29,12 @@ struct MediumBrickMemory
   std::vector<float> Error;
   std::vector<float> Change;
   std::vector<float> Deep;
+  std::vector<float> Glare;
   std::vector<float> Planes[3];
   std::vector<float> Inverse[3];
+  /// True: Samples have been filled with the places of the samples of the brick, with one more on each side.
+  bool HasBorder = false;
+  MediumShading Shading;
 };
 
 /// A MediumBrick of samples of type T. Keeps references.
@@ -68,9 +73,11 @@ public:
     memory.Error.assign(nodes, Unknown);
     memory.Change.resize(std::max(memory.Change.size(), nodes));
     memory.Deep.resize(memory.Change.size());
+    memory.Glare.resize(memory.Change.size());
     this->Error = memory.Error.data();
     this->Change = memory.Change.data();
     this->Deep = memory.Deep.data();
+    this->Glare = memory.Glare.data();
     this->SetSamples();
   }
 
@@ -81,24 +88,24 @@ public:
     const int number = isPart ? node : node - this->FirstMacrocell;
     const std::array<int, 3> place{ number % counts[0], number / counts[0] % counts[1],
       number / (counts[0] * counts[1]) };
-    const bricks::MacrocellRange<T> range =
+    const bricks::MacrocellRange<T> values =
       isPart ? this->FindPartRange(place) : this->Brick.GetMacrocellRanges()[number];
     const auto at = static_cast<std::size_t>(node);
-    if (!(range.Min <= range.Max) ||
-      !this->Function.IsSeen(static_cast<double>(range.Min), static_cast<double>(range.Max)))
+    if (!(values.Min <= values.Max) ||
+      !this->Function.IsSeen(static_cast<double>(values.Min), static_cast<double>(values.Max)))
     {
       this->Memory.Error[at] = Unseen;
       return;
     }
     const TransferFunction::Behavior behavior =
-      this->Function.FindBehavior(this->Function.GetPlace(static_cast<double>(range.Min)),
-        this->Function.GetPlace(static_cast<double>(range.Max)));
+      this->Function.FindBehavior(this->Function.GetPlace(static_cast<double>(values.Min)),
+        this->Function.GetPlace(static_cast<double>(values.Max)));
     this->Memory.Change[at] = static_cast<float>(behavior.Change);
     this->Memory.Deep[at] = static_cast<float>(behavior.Extinction * behavior.Tinge);
     double bend = std::numeric_limits<double>::infinity();
     if (this->IsNearest)
     {
-      bend = range.Min < range.Max || this->Mask ? bend : 0.0;
+      bend = values.Min < values.Max || this->Mask ? bend : 0.0;
     }
     else if (!this->Grid)
     {
@@ -110,6 +117,16 @@ public:
     }
     this->Memory.Error[at] = 
       static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
+    // How far normals turn in the node, at most: its second differences beside its first.
+    const double range = static_cast<double>(values.Max) - static_cast<double>(values.Min);
+    const double edge = isPart ? PartCells : MacrocellCells;
+    const double turn = 1.6 * edge * edge * bend / range;
+    this->Memory.Glare[at] =
+      static_cast<float>(behavior.Extinction * std::min(1.0, 0.125 * turn * turn));
+    if (std::isnan(this->Memory.Glare[at])) // values are all the same
+    {
+      this->Memory.Glare[at] = 0.0f;
+    }
     if (std::isnan(this->Memory.Error[at])) // no change, of a bend that is not known
     {
       this->Memory.Error[at] = std::numeric_limits<float>::infinity();
@@ -149,6 +166,13 @@ private:
   {
     const double origin = this->Function.GetOrigin();
     const double scale = this->Function.GetScale();
+    if (this->Memory.HasBorder)
+    {
+      this->Row += 2;
+      this->Slice = this->Row * (this->Cells[1] + 3);
+      this->SetPlaces(this->Memory.Samples.data() + 1 + this->Row + this->Slice);
+      return;
+    }
     this->Samples = this->Brick.GetSamples();
     this->Subtracted = static_cast<float>(origin);
     this->Scale = static_cast<float>(scale);
@@ -178,7 +202,12 @@ private:
     std::transform(this->Brick.GetSamples(), this->Brick.GetSamples() + this->Memory.Samples.size(),
       this->Memory.Samples.begin(),
       [&](T sample) { return static_cast<float>((static_cast<double>(sample) - origin) * scale); });
-    this->Samples = this->Memory.Samples.data();
+    this->SetPlaces(this->Memory.Samples.data());
+  }
+  void SetPlaces(const float* places)
+  {
+    this->Kind = SampleKind::Float;
+    this->Samples = places;
     this->Subtracted = 0.0f;
     this->Scale = 1.0f;
     this->Offset = 0.0f;

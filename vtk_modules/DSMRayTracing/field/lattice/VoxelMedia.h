@@ -4,15 +4,20 @@
 
 #include "DSMBricks/layout/VoxelBrick.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
+#include "DSMRayTracing/field/lattice/BorderedBrick.h"
 #include "DSMRayTracing/field/lattice/TypedMediumBrick.h"
 #include "DSMRayTracing/field/lattice/VoxelSearch.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/Ray.h"
 
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <type_traits>
 
 namespace rt
 {
@@ -47,11 +52,27 @@ protected:
       return 0;
     }
     bricks.Reached = std::max(bricks.Reached, place + 1);
+    MediumBrickMemory& memory = *this->Memory;
+    memory.HasBorder = light.Shading != nullptr;
+    if constexpr (std::is_same_v<typename FieldType::Values, bricks::VoxelField>)
+    {
+      if (memory.HasBorder)
+      {
+        BorderedBrick<T>::Fill(this->Blocks, this->Self, *field.Voxels, brick.Id, function, memory);
+      }
+    }
     const typename Store::Pin pin =
       this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
     const bricks::VoxelBrick<T> voxels(pin.GetData());
     TypedMediumBrick<T> medium(voxels, function, light.Nearest, packet.Planes, brick.Lower,
-      this->Kernel.Macrocells, *this->Memory);
+      this->Kernel.Macrocells, memory);
+    if (light.Shading)
+    {
+      memory.Shading = *light.Shading;
+      memory.Shading.ToNormal =
+        -glm::mat3(glm::transpose(field.GetIndexSpace().GetWorldToIndex()));
+      medium.Shading = &memory.Shading;
+    }
     dark = this->Kernel.March(packet, meets, medium, brick.Lower, function, light);
     return meets;
   }

@@ -27,6 +27,9 @@ public:
   {
   }
 
+  /// See MediumTracer::GetMarchedLook.
+  static bool CanShade(const LevelField&) { return false; }
+
   /// See MediumTracer.
   RayMask March(const LevelField& field, const TransferFunction& function, ObjectBeam* beam,
     const Ray* rays, RayMask wanted, MediumLight& light) const

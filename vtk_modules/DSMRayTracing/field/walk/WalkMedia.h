@@ -23,6 +23,8 @@ class WalkMedia : public WalkSearch<FieldType, Store>
 public:
   using WalkSearch<FieldType, Store>::WalkSearch;
 
+  static bool CanShade(const FieldType&) { return false; }
+
   RayMask March(const FieldType& field, const TransferFunction& function, ObjectBeam*,
     const Ray* rays, RayMask wanted, MediumLight& light) const
   {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_MediumShading_h
+#define rt_MediumShading_h
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace rt
+{
+
+/// The light of lamps far away, of which nothing stands in the way: what a medium needs to be shaded while rays march
+/// through it, without pieces that are described later.
+struct MediumShading
+{
+  struct Lamp
+  {
+    glm::vec3 Direction; ///< unit, from the lamp, in world space
+    glm::vec3 Diffuse;   ///< times the emission
+    glm::vec3 Specular;  ///< times the opacity
+  };
+  std::vector<Lamp> Lamps;
+  glm::vec3 Ambient{ 0.0f };        ///< times the emission
+  glm::vec3 AmbientOpacity{ 0.0f }; ///< times the opacity
+  float SpecularPower = 1.0f;
+  bool HasHighlights = false;
+  bool TwoSided = true;
+  /// From gradients in the space of the bricks to normals against them in world space, which are not of unit length.
+  glm::mat3 ToNormal{ 1.0f };
+};
+
+} // namespace rt
+
+#endif
