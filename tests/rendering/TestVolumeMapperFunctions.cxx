@@ -47,6 +47,7 @@ TEST_F(VolumeMapper, LowDecadesOfALogarithmicMapAreSeen)
     colors->SetUseLogScale(isLogarithmic);
     opacity->SetUseLogScale(isLogarithmic);
     vtkNew<vtkVolumeProperty> property;
+    property->SetInterpolationTypeToLinear();
     property->SetColor(colors);
     property->SetScalarOpacity(opacity);
     this->Volume->SetProperty(property);

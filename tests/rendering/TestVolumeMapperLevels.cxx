@@ -192,6 +192,20 @@ TEST_F(VolumeMapperLevels, StandsInForAmrVolumeMapper)
   EXPECT_EQ(copy->GetNumberOfSamples()[2], 256);
 }
 
+TEST_F(VolumeMapperLevels, VolumesAreInterpolatedWithAWarning)
+{
+  this->Mapper->AddObserver(vtkCommand::WarningEvent, this->Errors);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Volume->GetProperty()->SetInterpolationTypeToNearest();
+  this->Render(MakeTrees(2));
+  const std::string message = this->Errors->GetWarningMessage();
+  EXPECT_NE(message.find("AMR and hyper tree grids"), std::string::npos) << message;
+  this->Errors->Clear();
+  this->Volume->GetProperty()->SetInterpolationTypeToLinear();
+  this->Render(MakeTrees(2));
+  EXPECT_FALSE(this->Errors->GetWarning()) << this->Errors->GetWarningMessage();
+}
+
 TEST_F(VolumeMapperLevels, WhatCannotBeShownIsExplained)
 {
   this->ExpectError(MakeAmr<vtkNonOverlappingAMR>(

@@ -4,6 +4,7 @@
 
 #include "vtkDSMLightOptions.h"
 
+#include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
@@ -348,8 +349,12 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Mapper->AddObserver(vtkCommand::ErrorEvent, observer);
   this->Mapper->AddObserver(vtkCommand::WarningEvent, observer);
   this->Window->Render();
-  EXPECT_NE(observer->GetWarningMessage().find("InterpolationTypeToLinear"), std::string::npos)
-    << "VTK's default is the nearest sample";
+  EXPECT_FALSE(observer->GetError() || observer->GetWarning())
+    << "the nearest sample is VTK's default";
+  // What cannot be the nearest sample.
+  this->Mapper->SetBlendMode(vtkVolumeMapper::ADDITIVE_BLEND);
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("InterpolationTypeToLinear"), std::string::npos);
   observer->Clear();
   this->Mapper->SetInputData(MakeBall());
   this->Window->Render();
@@ -363,6 +368,21 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   EXPECT_NE(
     observer->GetWarningMessage().find("Interpret Values As Categories"), std::string::npos);
   observer->Clear();
+  this->Mapper->SetBlendMode(vtkVolumeMapper::COMPOSITE_BLEND);
+  this->Window->Render();
+  EXPECT_FALSE(observer->GetError() || observer->GetWarning());
+  const auto ofCells = MakeBall();
+  vtkNew<vtkFloatArray> values;
+  values->SetName("distance");
+  values->SetNumberOfTuples(ofCells->GetNumberOfCells());
+  values->Fill(0.5);
+  ofCells->GetCellData()->AddArray(values);
+  this->Mapper->SetInputData(ofCells);
+  this->Mapper->SetIsoArrayOnCells(true);
+  this->Window->Render();
+  EXPECT_NE(observer->GetWarningMessage().find("Resample To Image"), std::string::npos);
+  observer->Clear();
+  this->Mapper->SetIsoArrayOnCells(false);
   categories->IndexedLookupOff();
   this->Window->Render();
   EXPECT_FALSE(observer->GetError() || observer->GetWarning());

@@ -93,6 +93,13 @@ void vtkPVDSMVolumeRepresentation::SetShade(bool shade)
   this->VolumeProperty->SetShade(shade);
 }
 
+void vtkPVDSMVolumeRepresentation::SetInterpolationType(int type)
+{
+  // Volume's Cubic is linear, too: it is what vtkVolumeProperty makes of it.
+  this->VolumeProperty->SetInterpolationType(
+    type == VTK_NEAREST_INTERPOLATION ? VTK_NEAREST_INTERPOLATION : VTK_LINEAR_INTERPOLATION);
+}
+
 void vtkPVDSMVolumeRepresentation::SetVolumeAnisotropy(double anisotropy)
 {
   this->VolumeProperty->SetScatteringAnisotropy(static_cast<float>(anisotropy));

@@ -36,12 +36,14 @@ public:
 
   ///@{
   /**
-   * Forwarded to the volume's property. The map's vector mode chooses the array's component.
+   * Forwarded to the volume's property. The map's vector mode chooses the array's component. Any interpolation type
+   * but nearest is linear.
    */
   void SetLookupTable(vtkScalarsToColors* table) override;
   void SetScalarOpacity(vtkPiecewiseFunction* function);
   void SetScalarOpacityUnitDistance(double distance);
   void SetShade(bool shade);
+  void SetInterpolationType(int type);
   void SetVolumeAnisotropy(double anisotropy);
   ///@}
 

@@ -94,8 +94,8 @@ void OfferBlendModes(vtkSMProperty* property, vtkSMProperty* own)
 
 } // namespace
 
-/// Volume's definition lets the panel show these to advanced users only, or Shade for Volume, too, and a property
-/// can name only one representation. Shade is in a group that is hidden for all others.
+/// Volume's definition lets the panel show these to advanced users only, or to nobody, or Shade for Volume, too, and a
+/// property can name only one representation. Shade is in a group that is hidden for all others.
 void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
 {
   this->Superclass::CreateVTKObjects();
@@ -116,6 +116,13 @@ void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
     {
       vtkPVDSMHints::Change(property, MakeHint(BesideVolumes), nullptr);
     }
+  }
+  if (vtkSMProperty* const interpolation = display->GetProperty("InterpolationType"))
+  {
+    interpolation->SetPanelVisibility("default");
+    vtkPVDSMHints::Change(interpolation,
+      MakeHint(Decorator + "mode='enabled_state' property='BlendMode' value='0'/>"), nullptr);
+    vtkPVDSMHints::Change(interpolation, MakeHint(WhenShown + "value='DSM Volume'/>"), nullptr);
   }
   if (vtkSMProperty* const direction = display->GetProperty("VolumeAnisotropy"))
   {

@@ -150,6 +150,10 @@ private:
   /// One medium, of one of the arrays, for each of the volume's parts. `groups`: of the parts' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,
     std::vector<int>& groups, rt::Scene& scene);
+  /// Returns whether all values of the medium are at the points of lattices, or in their cells, not on levels.
+  bool IsOfSamples() const;
+  /// Returns how the values of a component of the medium are found.
+  vtkDSMVolumeLook::Sampling GetMediumSampling(int component) const;
   /// Returns whether that array's values are colors.
   bool HasDirectColors() const;
   /// The medium's colors, with the opacities of the same values or without; of the first one of several.
@@ -187,8 +191,9 @@ private:
   /// For each of the arrays, those of the last frame's parts.
   std::map<vtkDSMVolumeLook::MediumKey, vtkDSMVolumeLook::MediumMaker> MediumMakers[MostArrays];
   using KeptColors = std::shared_ptr<const rt::ColorMap>;
-  /// Without opacities, and with; by the property and its time, the component, and the range of values.
-  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, float, float>, KeptColors>
+  /// Without opacities, and with; by the property and its time, the component, whether it has categories, and the
+  /// range of values.
+  vtkDSMKept<std::tuple<vtkVolumeProperty*, vtkMTimeType, int, bool, float, float>, KeptColors>
     MediumColors[2];
   /// By the map, and the opacity function and its time.
   vtkDSMKept<std::tuple<KeptColors, vtkPiecewiseFunction*, vtkMTimeType>, KeptColors> SliceColors;

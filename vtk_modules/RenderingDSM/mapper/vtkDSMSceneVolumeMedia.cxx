@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +23,20 @@ bool vtkDSMSceneVolume::HasDirectColors() const
   return this->GetColoring().Choice.Component == vtkDSMImagePiece::Color;
 }
 
+bool vtkDSMSceneVolume::IsOfSamples() const
+{
+  const vtkDSMVolumeData::Values& parts = this->GetIso()->GetParts();
+  return std::all_of(parts.begin(), parts.end(),
+    [](const auto& values) {
+      return !values || std::holds_alternative<rt::LatticeField>(values->GetField(glm::dmat4(1.0)));
+    });
+}
+
+vtkDSMVolumeLook::Sampling vtkDSMSceneVolume::GetMediumSampling(int component) const
+{
+  return this->GetLook().GetSampling(this->Data->GetArrays(), this->IsOfSamples(), component);
+}
+
 std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasOpacity)
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
@@ -29,19 +44,21 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
   const Published& array = isFirst ? *this->GetIso() : this->GetColoring();
   const int component = this->HasSeveralMedia() ? array.Choice.Component : 0;
   const bricks::ValueRange range = array.GetRange();
+  const bool hasCategories =
+    this->GetMediumSampling(component) == vtkDSMVolumeLook::Sampling::Categories;
   return this->MediumColors[hasOpacity ? 1 : 0].Get(
-    { property, property->GetMTime(), component, range.First, range.Last },
+    { property, property->GetMTime(), component, hasCategories, range.First, range.Last },
     [&]
     {
       return std::make_shared<rt::ColorMap>(
-        vtkDSMTranslation::ToColorMap(property, component, range, hasOpacity));
+        vtkDSMTranslation::ToColorMap(property, component, range, hasOpacity, hasCategories));
     });
 }
 
 void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
 {
   this->MissingFeatures.clear();
-  look.FindMissingFeatures(this->Data->GetArrays(), this->MissingFeatures);
+  look.FindMissingFeatures(this->Data->GetArrays(), this->IsOfSamples(), this->MissingFeatures);
   this->Warnings.insert(
     this->Warnings.end(), this->MissingFeatures.begin(), this->MissingFeatures.end());
   if (look.GetComponents(this->Data->GetArrays()) == vtkDSMVolumeLook::Components::Refused)
@@ -82,6 +99,12 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
   }
   const std::optional<int> component =
     this->HasSeveralMedia() ? std::optional<int>(array.Choice.Component) : std::nullopt;
+  using Sampling = vtkDSMVolumeLook::Sampling;
+  Sampling sampling = this->GetMediumSampling(component.value_or(0));
+  if (sampling == Sampling::Categories && !this->HasSeveralMedia() && this->GetColor())
+  {
+    sampling = Sampling::Nearest; // the categories are those of the other array
+  }
   const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
   double bounds[6];
   this->Data->GetBounds(bounds);
@@ -97,7 +120,7 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
     {
       using FieldType = std::decay_t<decltype(field)>;
       const auto key = look.GetMediumKey(
-        range, field.GetFinestLength(worldToData), glm::length(upper - lower), component);
+        range, field.GetFinestLength(worldToData), glm::length(upper - lower), component, sampling);
       makers.insert(known.extract(key));
       const auto [entry, isNew] = makers.try_emplace(key);
       if (isNew)
@@ -145,12 +168,15 @@ void vtkDSMSceneVolume::AddCaps(
   {
     return;
   }
+  const int component = this->HasSeveralMedia() ? this->GetIso()->Choice.Component : 0;
+  const bool isNearest = this->GetMediumSampling(component) != vtkDSMVolumeLook::Sampling::Linear;
   this->ForEachField(*this->GetIso(), dataToWorld,
     [&](const auto& field, std::size_t part)
     {
       using FieldType = std::decay_t<decltype(field)>;
       rt::SliceOf<FieldType> face;
       face.Field = field;
+      face.NearestValues = isNearest;
       const auto own = this->FindOwnColors<FieldType>(part);
       face.ColorValues = own ? own : face.Field.Voxels;
       face.Clipping = look.GetClipRegion(dataToWorld);

@@ -100,7 +100,7 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
 }
 
 vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(const bricks::ValueRange& range,
-  double cellLength, double diagonal, const std::optional<int>& component) const
+  double cellLength, double diagonal, const std::optional<int>& component, Sampling sampling) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
   const double* const averaged = this->Mapper->GetAverageIPScalarRange();
@@ -110,20 +110,22 @@ vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(const bricks::ValueRa
     isComposite || mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND ? cellLength : 0.0,
     isComposite ? diagonal : 0.0, property, property->GetMTime(), mode,
     { averaged[0], averaged[1] }, component.value_or(0),
-    component ? property->GetComponentWeight(*component) : 1.0 };
+    component ? property->GetComponentWeight(*component) : 1.0, sampling };
 }
 
 vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& key)
 {
-  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged, component,
-    weight] = key;
+  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged, component, weight,
+    sampling] = key;
   switch (mode)
   {
     case vtkVolumeMapper::COMPOSITE_BLEND:
-      return [function = vtkDSMTranslation::ToTransferFunction(
-                property, component, weight, first, last, cellLength, diagonal),
-               look = vtkDSMTranslation::ToMediumLook(property, component, last - first)](
-               const rt::AnyField& any, const rt::ClipRegion& clipping)
+    {
+      rt::MediumLook look = vtkDSMTranslation::ToMediumLook(property, component, last - first);
+      look.Nearest = sampling != Sampling::Linear;
+      return [function = vtkDSMTranslation::ToTransferFunction(property, component, weight, first,
+                last, cellLength, diagonal, sampling == Sampling::Categories),
+               look](const rt::AnyField& any, const rt::ClipRegion& clipping)
       {
         return std::visit(
           [&](const auto& field) -> rt::SceneMedium {
@@ -131,6 +133,7 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
           },
           any);
       };
+    }
     case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
     case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
       return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last),
@@ -185,15 +188,57 @@ vtkDSMVolumeLook::Components vtkDSMVolumeLook::GetComponents(const vtkDSMImageAr
   return components == 2 || components == 4 ? Components::Dependent : Components::Refused;
 }
 
-void vtkDSMVolumeLook::FindMissingFeatures(
-  const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const
+vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetRequestedSampling(int component) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const auto warn = [&](bool isMissing, const char* feature, const char* remedy)
+  // To ask for the color function of a gray component would make it the one that counts.
+  const bool hasCategories = property->GetColorChannels(component) == 3 &&
+    property->GetRGBTransferFunction(component)->GetIndexedLookup() != 0;
+  return hasCategories                                              ? Sampling::Categories
+    : property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? Sampling::Nearest
+                                                                    : Sampling::Linear;
+}
+
+std::optional<vtkDSMVolumeLook::Obstacle> vtkDSMVolumeLook::FindNearestObstacle(
+  const vtkDSMImageArrays& arrays, bool isOfSamples) const
+{
+  if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
+  {
+    return Obstacle{ "in this blend mode",
+      "Call SetBlendModeToComposite(). In ParaView, set Blend Mode to Composite." };
+  }
+  if (!isOfSamples)
+  {
+    return Obstacle{ "for AMR and hyper tree grids",
+      "Draw slices with InterpolateSlicesOff(). In ParaView, use DSM Slices without Interpolate "
+      "Values, or apply Resample To Image." };
+  }
+  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetShown(arrays);
+  if (std::any_of(shown.begin(), shown.end(), [](const auto& choice) { return choice.OnCells; }))
+  {
+    return Obstacle{ "for values of cells",
+      "Draw slices. In ParaView, use DSM Slices, or apply Resample To Image, which gives each "
+      "point the value of its cell." };
+  }
+  return std::nullopt;
+}
+
+vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetSampling(
+  const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const
+{
+  return this->FindNearestObstacle(arrays, isOfSamples) ? Sampling::Linear
+                                                        : this->GetRequestedSampling(component);
+}
+
+void vtkDSMVolumeLook::FindMissingFeatures(
+  const vtkDSMImageArrays& arrays, bool isOfSamples, std::vector<std::string>& warnings) const
+{
+  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
+  const auto warn = [&](bool isMissing, const std::string& feature, const std::string& remedy)
   {
     if (isMissing)
     {
-      warnings.push_back(std::string("The volume is to be drawn with ") + feature +
+      warnings.push_back("The volume is to be drawn with " + feature +
         ", which DSM Ray Tracer does not support for volumes. The volume is drawn without it. " +
         remedy);
     }
@@ -210,15 +255,18 @@ void vtkDSMVolumeLook::FindMissingFeatures(
     "opacities from another array, in this blend mode",
     "Call SetBlendModeToComposite() or SetOpacityArray(\"\") on the mapper. In ParaView, set Blend "
     "Mode to Composite, or turn off Use Separate Opacity Array.");
-  warn(property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION,
-    "the nearest sample (VTK's default) instead of linear interpolation",
-    "Call SetInterpolationTypeToLinear(). For labels, draw slices with InterpolateSlicesOff().");
-  warn(property->GetColorChannels() == 3 &&
-      property->GetRGBTransferFunction()->GetIndexedLookup() != 0,
-    "a color for each category",
-    "Call IndexedLookupOff() on the color function, or draw slices with InterpolateSlicesOff(). In "
-    "ParaView, turn off Interpret Values As Categories, or use DSM Slices without Interpolate "
-    "Values.");
+  const Sampling requested = this->GetRequestedSampling(0);
+  const auto found = this->FindNearestObstacle(arrays, isOfSamples);
+  const Obstacle obstacle = found.value_or(Obstacle{});
+  warn(found && requested == Sampling::Categories, "a color for each category " + obstacle.Reason,
+    obstacle.Remedy +
+      " Or call IndexedLookupOff() on the color function. In ParaView, turn off "
+      "Interpret Values As Categories.");
+  warn(found && requested == Sampling::Nearest,
+    "the nearest sample (VTK's default) instead of linear interpolation " + obstacle.Reason,
+    "Call SetInterpolationTypeToLinear(). In ParaView, set Interpolation Type to Linear. For "
+    "labels: " +
+      obstacle.Remedy);
   if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
   {
     return;

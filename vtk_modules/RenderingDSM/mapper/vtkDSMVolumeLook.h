@@ -51,16 +51,28 @@ public:
   /// `arrays`: those that there are.
   Components GetComponents(const vtkDSMImageArrays& arrays) const;
   /// Adds warnings about features that the property requests for the array's components, and media do not have yet.
+  /// `isOfSamples`: see FindNearestObstacle.
   void FindMissingFeatures(
-    const vtkDSMImageArrays& arrays, std::vector<std::string>& warnings) const;
+    const vtkDSMImageArrays& arrays, bool isOfSamples, std::vector<std::string>& warnings) const;
+  /// The value of a place in a medium. Linear: interpolated between samples. Nearest: that of the nearest sample.
+  /// Categories: the same, and only annotated values have a color and an opacity.
+  enum class Sampling
+  {
+    Linear,
+    Nearest,
+    Categories
+  };
+  /// Returns what the property requests for a component, or Linear where that is not possible. `isOfSamples`: see
+  /// FindNearestObstacle.
+  Sampling GetSampling(const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
   /// the medium, the property and its time, the blend mode and the range of an average, the component whose
-  /// functions are taken and its weight.
+  /// functions are taken and its weight. And the sampling of values.
   using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
-    int, std::array<double, 2>, int, double>;
+    int, std::array<double, 2>, int, double, Sampling>;
   /// `component`: one of several independent ones, or none (std::nullopt).
   MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal,
-    const std::optional<int>& component) const;
+    const std::optional<int>& component, Sampling sampling) const;
   /// Returns whether another array defines the density of the medium.
   bool HasOpacityArray() const;
   /// Makes the medium that has the values of a field, within a region.
@@ -104,6 +116,17 @@ public:
   static std::vector<rt::SectionPlane> GetFaces(const rt::ClipRegion& region);
 
 private:
+  /// Why a medium cannot show the nearest sample, as the end of a sentence, and what to do instead.
+  struct Obstacle
+  {
+    std::string Reason;
+    std::string Remedy;
+  };
+  /// Null: there is none. `isOfSamples`: all values are at the points of lattices, or in their cells, not on levels.
+  std::optional<Obstacle> FindNearestObstacle(
+    const vtkDSMImageArrays& arrays, bool isOfSamples) const;
+  /// Returns the sampling that the property requests for a component.
+  Sampling GetRequestedSampling(int component) const;
   bool HasColorArray() const;
   int GetColorComponent() const;
   /// Returns the array of the isosurfaces or of the medium. Without a name: the active scalars.

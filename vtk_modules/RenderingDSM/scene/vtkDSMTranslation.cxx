@@ -61,26 +61,6 @@ glm::vec4 MapValue(vtkScalarsToColors* table, double value)
   return { color[0], color[1], color[2], table->GetOpacity(value) };
 }
 
-/// Returns the annotations that are numbers.
-std::vector<rt::ColorMap::Category> ToCategories(vtkScalarsToColors* table)
-{
-  std::vector<rt::ColorMap::Category> categories;
-  for (vtkIdType index = 0; index < table->GetNumberOfAnnotatedValues(); ++index)
-  {
-    bool isNumber = false;
-    const double value = table->GetAnnotatedValue(index).ToDouble(&isNumber);
-    if (isNumber && !std::isnan(value))
-    {
-      double color[4];
-      table->GetIndexedColor(index, color);
-      categories.push_back({ value, { color[0], color[1], color[2], color[3] } });
-    }
-  }
-  std::sort(categories.begin(), categories.end(),
-    [](const auto& a, const auto& b) { return a.Value < b.Value; });
-  return categories;
-}
-
 void SetCamera(
   vtkRenderer* renderer, double aspect, vtkMatrix4x4* projection, rt::FrameRequest& request)
 {
@@ -163,9 +143,9 @@ rt::Material vtkDSMTranslation::ToMaterial(vtkVolumeProperty* property, double i
 
 std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunction(
   vtkVolumeProperty* property, int component, double weight, double first, double last,
-  double cellLength, double diagonal)
+  double cellLength, double diagonal, bool hasCategories)
 {
-  const vtkDSMVolumeFunctions functions(property, component);
+  const vtkDSMVolumeFunctions functions(property, component, hasCategories);
   functions.Narrow(first, last);
   const double unit = property->GetScalarOpacityUnitDistance(component);
   const auto look = [&](double value)
@@ -207,9 +187,9 @@ rt::MediumLook vtkDSMTranslation::ToMediumLook(
 }
 
 std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
-  vtkVolumeProperty* property, int component, double first, double last)
+  vtkVolumeProperty* property, int component, double first, double last, bool hasCategories)
 {
-  const vtkDSMVolumeFunctions functions(property, component);
+  const vtkDSMVolumeFunctions functions(property, component, hasCategories);
   functions.Narrow(first, last);
   auto map = std::make_shared<rt::ColorMap>();
   map->First = first;
@@ -222,18 +202,23 @@ std::shared_ptr<const rt::ColorMap> vtkDSMTranslation::ToColorMap(
   return map;
 }
 
-rt::ColorMap vtkDSMTranslation::ToColorMap(
-  vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity)
+rt::ColorMap vtkDSMTranslation::ToColorMap(vtkVolumeProperty* property, int component,
+  const bricks::ValueRange& range, bool hasOpacity, bool hasCategories)
 {
   vtkPiecewiseFunction* const opacity =
     hasOpacity ? property->GetScalarOpacity(component) : nullptr;
   // To ask for the other one would make it the one that counts.
-  rt::ColorMap map = property->GetColorChannels(component) == 1
-    ? *ToColorMap(property, component, range.First, range.Last)
+  rt::ColorMap map = property->GetColorChannels(component) == 1 || hasCategories
+    ? *ToColorMap(property, component, range.First, range.Last, hasCategories)
     : ToColorMap(property->GetRGBTransferFunction(component), opacity);
   if (!hasOpacity)
   {
     map.SetOpaque();
+  }
+  if (hasCategories)
+  {
+    map.NotANumber =
+      glm::vec4(ToColor(property->GetRGBTransferFunction(component)->GetNanColor()), 0.0f);
   }
   map.NotANumber.w = 0.0f;
   return map;
@@ -336,10 +321,10 @@ rt::ColorMap vtkDSMTranslation::ToColorMap(vtkScalarsToColors* table, vtkPiecewi
   map.NotANumber.w = static_cast<float>(mapped[3]) / 255.0f;
   if (table->GetIndexedLookup())
   {
-    map.Categories = ToCategories(table);
+    map.Categories = vtkDSMVolumeFunctions::FindCategories(table);
     for (rt::ColorMap::Category& category : *map.Categories)
     {
-      category.Color.w = opacity ? look(category.Value).w : category.Color.w;
+      category.Color.w *= opacity ? look(category.Value).w : 1.0f;
     }
     return map;
   }

@@ -45,19 +45,20 @@ public:
 
   /// The color and opacity functions of a property's component, and its unit distance, for a medium whose values
   /// are from `first` to `last`. `weight`: of its opacities. `cellLength` and `diagonal`: of a cell's edge, and of
-  /// the medium, in the space of the data.
+  /// the medium, in the space of the data. `hasCategories`: see vtkDSMVolumeFunctions.
   static std::shared_ptr<const rt::TransferFunction> ToTransferFunction(vtkVolumeProperty* property,
-    int component, double weight, double first, double last, double cellLength, double diagonal);
+    int component, double weight, double first, double last, double cellLength, double diagonal,
+    bool hasCategories);
 
   /// The shading of a property's component, and its gradient opacity, for a medium whose values differ so much.
   static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, int component, double range);
   /// The same functions as colors and opacities of single values.
-  static std::shared_ptr<const rt::ColorMap> ToColorMap(
-    vtkVolumeProperty* property, int component, double first, double last);
+  static std::shared_ptr<const rt::ColorMap> ToColorMap(vtkVolumeProperty* property, int component,
+    double first, double last, bool hasCategories = false);
   /// The color function, as the legend of a property's component shows it, for values of a range, with the
-  /// opacities of the same values or opaque. NaN is transparent.
-  static rt::ColorMap ToColorMap(
-    vtkVolumeProperty* property, int component, const bricks::ValueRange& range, bool hasOpacity);
+  /// opacities of the same values or opaque. NaN is transparent. `hasCategories`: see vtkDSMVolumeFunctions.
+  static rt::ColorMap ToColorMap(vtkVolumeProperty* property, int component,
+    const bricks::ValueRange& range, bool hasOpacity, bool hasCategories);
   /// The values, 0 to 1 in that range, times their opacities of a property's first component, which LatticeSum adds
   /// up over `unit` of length. In a mean, the values between the two that are `counted` count.
   static std::shared_ptr<const rt::TransferFunction> ToSum(vtkVolumeProperty* property,

@@ -3,12 +3,15 @@
 
 #include "vtkColorTransferFunction.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkScalarsToColors.h"
+#include "vtkVariant.h"
 #include "vtkVolumeProperty.h"
 
 #include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace
 {
@@ -40,9 +43,13 @@ void AddFunctionNodes(
   }
 }
 
+/// The most that a value may differ from its category: labels are integers.
+constexpr double MostFromCategory = 0.5;
+
 } // namespace
 
-vtkDSMVolumeFunctions::vtkDSMVolumeFunctions(vtkVolumeProperty* property, int component)
+vtkDSMVolumeFunctions::vtkDSMVolumeFunctions(
+  vtkVolumeProperty* property, int component, bool hasCategories)
   : Opacity(property->GetScalarOpacity(component))
 {
   // To ask for the other one would make it the one that counts.
@@ -53,12 +60,36 @@ vtkDSMVolumeFunctions::vtkDSMVolumeFunctions(vtkVolumeProperty* property, int co
   else
   {
     this->Colors = property->GetRGBTransferFunction(component);
+    if (hasCategories)
+    {
+      this->Colors->Build();
+      this->Categories = FindCategories(this->Colors);
+    }
   }
+}
+
+std::vector<rt::ColorMap::Category> vtkDSMVolumeFunctions::FindCategories(vtkScalarsToColors* table)
+{
+  std::vector<rt::ColorMap::Category> categories;
+  for (vtkIdType index = 0; index < table->GetNumberOfAnnotatedValues(); ++index)
+  {
+    bool isNumber = false;
+    const double value = table->GetAnnotatedValue(index).ToDouble(&isNumber);
+    if (isNumber && !std::isnan(value))
+    {
+      double color[4];
+      table->GetIndexedColor(index, color);
+      categories.push_back({ value, { color[0], color[1], color[2], color[3] } });
+    }
+  }
+  std::sort(categories.begin(), categories.end(),
+    [](const auto& a, const auto& b) { return a.Value < b.Value; });
+  return categories;
 }
 
 void vtkDSMVolumeFunctions::Narrow(double& first, double& last) const
 {
-  const bool areClamped = this->Opacity->GetClamping() != 0 &&
+  const bool areClamped = !this->Categories && this->Opacity->GetClamping() != 0 &&
     (this->Gray ? this->Gray->GetClamping() : this->Colors->GetClamping()) != 0;
   if (areClamped)
   {
@@ -94,8 +125,36 @@ bool vtkDSMVolumeFunctions::AreLogarithmic(double first) const
   return first > 0.0 && (this->Opacity->GetUseLogScale() || IsLogarithmic(this->Colors));
 }
 
+glm::dvec4 vtkDSMVolumeFunctions::GetCategoryLook(double value) const
+{
+  const auto next = std::lower_bound(this->Categories->begin(), this->Categories->end(), value,
+    [](const auto& category, double sought) { return category.Value < sought; });
+  auto nearest = next;
+  if (next != this->Categories->begin())
+  {
+    const auto before = std::prev(next);
+    const bool isBefore =
+      next == this->Categories->end() || value - before->Value < next->Value - value;
+    nearest = isBefore ? before : next;
+  }
+  if (nearest != this->Categories->end() && std::abs(nearest->Value - value) <= MostFromCategory)
+  {
+    glm::dvec4 look(nearest->Color);
+    look.w *= GetValue(this->Opacity, nearest->Value);
+    return look;
+  }
+  double color[3];
+  this->Colors->GetNanColor(color);
+  return { color[0], color[1], color[2],
+    this->Colors->GetNanOpacity() * GetValue(this->Opacity, value) };
+}
+
 glm::dvec4 vtkDSMVolumeFunctions::GetLook(double value) const
 {
+  if (this->Categories)
+  {
+    return this->GetCategoryLook(value);
+  }
   const double opacity = GetValue(this->Opacity, value);
   if (this->Gray)
   {
@@ -111,6 +170,21 @@ std::vector<double> vtkDSMVolumeFunctions::GetNodes() const
 {
   std::vector<double> nodes;
   AddNodes(this->Opacity, nodes);
+  if (this->Categories)
+  {
+    const rt::ColorMap::Category* before = nullptr;
+    for (const rt::ColorMap::Category& category : *this->Categories)
+    {
+      nodes.push_back(category.Value - MostFromCategory);
+      nodes.push_back(category.Value + MostFromCategory);
+      if (before && category.Value - before->Value < 2.0 * MostFromCategory)
+      {
+        nodes.push_back(0.5 * (before->Value + category.Value));
+      }
+      before = &category;
+    }
+    return nodes;
+  }
   if (this->Gray)
   {
     AddNodes(this->Gray, nodes);

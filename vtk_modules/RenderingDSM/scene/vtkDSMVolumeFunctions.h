@@ -2,12 +2,16 @@
 #ifndef vtkDSMVolumeFunctions_h
 #define vtkDSMVolumeFunctions_h
 
+#include "DSMRayTracing/look/ColorMap.h"
+
 #include <glm/vec4.hpp>
 
+#include <optional>
 #include <vector>
 
 class vtkColorTransferFunction;
 class vtkPiecewiseFunction;
+class vtkScalarsToColors;
 class vtkVolumeProperty;
 
 /// The color and opacity functions of a volume property's component, which are finite for any finite
@@ -15,10 +19,16 @@ class vtkVolumeProperty;
 class vtkDSMVolumeFunctions
 {
 public:
-  vtkDSMVolumeFunctions(vtkVolumeProperty* property, int component);
+  /// `hasCategories`: each annotated value of the color function has a color and an opacity of its own, which
+  /// multiplies that of the opacity function. All others have the color and opacity of NaN. Between two annotated
+  /// values, the step is half way, but no more than 0.5 away from them.
+  vtkDSMVolumeFunctions(vtkVolumeProperty* property, int component, bool hasCategories = false);
+
+  /// The annotated values of a table that are numbers, ascending. The table must have been built.
+  static std::vector<rt::ColorMap::Category> FindCategories(vtkScalarsToColors* table);
 
   /// If both functions are clamped, limits a range of values to that of the functions, with the next
-  /// values beyond it where these have colors of their own. The result is never empty.
+  /// values beyond it where these have colors of their own. Categories have no range. The result is never empty.
   void Narrow(double& first, double& last) const;
   /// Widens a range of a single value.
   static void Widen(double& first, double& last);
@@ -40,9 +50,12 @@ public:
   static double ToKnown(vtkColorTransferFunction* colors, double value);
 
 private:
+  glm::dvec4 GetCategoryLook(double value) const;
+
   vtkPiecewiseFunction* Opacity;
   vtkPiecewiseFunction* Gray = nullptr;
   vtkColorTransferFunction* Colors = nullptr;
+  std::optional<std::vector<rt::ColorMap::Category>> Categories;
 };
 
 #endif
