@@ -357,3 +357,34 @@ def show_as_volume(display, name):
 
 show_means("Cells")
 show_means("CellsWithOpacityArray", "other")
+
+# Labels, as of a segmentation, have no values between them: no sample has the green one.
+view = create_view()
+labels = image_source(
+    """
+image.SetExtent(piece)
+way = distance(piece)
+add(image, np.where(way < 0.4, 9, np.where(way < 0.7, 1, 0)).astype(np.uint8), 'labels')
+""",
+    in_parts=True,
+)
+display = simple.Show(labels, view)
+place_camera(view)
+simple.ColorBy(display, ("POINTS", "labels"))
+colors, opacity = simple.GetColorTransferFunction("labels"), simple.GetOpacityTransferFunction("labels")
+colors.RGBPoints = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 9.0, 0.0, 0.0, 1.0]
+opacity.Points = [0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.5, 0.0, 1.0, 0.2, 0.5, 0.0, 9.0, 0.2, 0.5, 0.0]
+display.ScalarOpacityUnitDistance = 1.7
+display.InterpolationType = "Nearest"
+compare("Labels", mean=2.0, largest=255)
+nearest = show_as("DSM Volume")
+check(nearest[..., 0].max() > 100 and nearest[..., 1].max() == 0, "two labels are seen, and nothing between")
+display.InterpolationType = "Linear"
+colors.InterpretValuesAsCategories = 1
+colors.Annotations = ["0", "air", "1", "skin", "5", "liver", "9", "bone"]
+colors.IndexedColors = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+check_equal(show_as("DSM Volume"), nearest, "categories are labels", tolerance=1)
+colors.EnableOpacityMapping, colors.IndexedOpacities = 1, [1.0, 0.0, 1.0, 1.0]
+hidden = show_as("DSM Volume")
+render(view, "LabelHidden")
+check(hidden[..., 0].max() == 0 and hidden[..., 2].max() > 100, "a label is hidden by its opacity")

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace
@@ -261,6 +262,123 @@ TEST_F(VolumeMapperOfFunctions, WhereOnlyTheColorIsNotANumberItIsTheMapsColorFor
   this->Mapper->SetOpacityArray("");
   EXPECT_LT(GetDifference(pictures[0], pictures[1]), 2.0);
   EXPECT_GT(pictures[1]->GetRange(1)[1], 100.0) << "green is seen";
+}
+
+/// Labels 9 and 1 in shells, and 0 outside, with functions that have a color for 5, too.
+class VolumeMapperOfLabels : public VolumeMapper
+{
+protected:
+  VolumeMapperOfLabels()
+  {
+    vtkDataArray* const values = this->Image->GetPointData()->GetScalars();
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      const double distance = values->GetTuple1(point);
+      values->SetTuple1(point, distance < 0.2 ? 9.0 : distance < 0.35 ? 1.0 : 0.0);
+    }
+    this->SetColor(0, 0.0, { 0.0, 0.0, 0.0, 1.0 });
+    this->SetColor(1, 1.0, { 1.0, 0.0, 0.0, 1.0 });
+    this->SetColor(2, 5.0, { 0.0, 1.0, 0.0, 1.0 });
+    this->SetColor(3, 9.0, { 0.0, 0.0, 1.0, 1.0 });
+    this->Opacity->AddPoint(0.0, 0.0);
+    this->Opacity->AddPoint(0.9, 0.0);
+    this->Opacity->AddPoint(1.0, 0.1);
+    this->Opacity->AddPoint(9.0, 0.3);
+    this->Property->SetColor(this->Colors);
+    this->Property->SetScalarOpacity(this->Opacity);
+    this->Volume->SetProperty(this->Property);
+    this->Place();
+    this->Renderer->AddVolume(this->Volume);
+    this->Mapper->SetNumberOfIsoValues(0);
+  }
+
+  void SetColor(unsigned int index, double label, const std::array<double, 4>& color)
+  {
+    this->Colors->AddRGBPoint(label, color[0], color[1], color[2]);
+    this->Colors->SetAnnotation(label, "label " + std::to_string(index));
+    this->Colors->SetIndexedColorRGBA(index, color.data());
+  }
+
+  vtkSmartPointer<vtkUnsignedCharArray> DrawLabels(vtkVolumeMapper* mapper)
+  {
+    mapper->SetInputDataObject(this->Image);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return pixels;
+  }
+  /// The largest of a channel.
+  static double FindMost(vtkUnsignedCharArray* pixels, int channel)
+  {
+    return pixels->GetRange(channel)[1];
+  }
+
+  vtkSmartPointer<vtkImageData> Image = MakeBall();
+  vtkNew<vtkVolumeProperty> Property;
+  vtkNew<vtkDiscretizableColorTransferFunction> Colors;
+  vtkNew<vtkPiecewiseFunction> Opacity;
+};
+
+TEST_F(VolumeMapperOfLabels, AreThoseOfTheRayCastMapper)
+{
+  vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+  theirs->SetAutoAdjustSampleDistances(0);
+  theirs->SetSampleDistance(0.03f);
+  const auto expected = this->DrawLabels(theirs);
+  EXPECT_GT(FindMost(expected, 0), 100.0);
+  EXPECT_GT(FindMost(expected, 2), 50.0);
+  const auto nearest = this->DrawLabels(this->Mapper);
+  EXPECT_LT(GetDifference(nearest, expected), 0.5);
+  EXPECT_EQ(FindMost(nearest, 1), 0.0) << "no sample has the green label";
+  this->Property->SetInterpolationTypeToLinear();
+  EXPECT_GT(FindMost(this->DrawLabels(this->Mapper), 1), 5.0);
+  // Categories are never interpolated.
+  this->Colors->IndexedLookupOn();
+  const auto categories = this->DrawLabels(this->Mapper);
+  EXPECT_LT(GetDifference(categories, nearest), 0.01);
+  EXPECT_EQ(FindMost(categories, 1), 0.0);
+}
+
+TEST_F(VolumeMapperOfLabels, EachHasAColorAndAnOpacity)
+{
+  this->Colors->IndexedLookupOn();
+  this->SetColor(1, 1.0, { 1.0, 0.0, 0.0, 0.0 });
+  const auto without = this->DrawLabels(this->Mapper);
+  EXPECT_EQ(FindMost(without, 0), 0.0) << "the red label is hidden";
+  EXPECT_GT(FindMost(without, 2), 100.0);
+  // The same by the opacity function.
+  this->SetColor(1, 1.0, { 1.0, 0.0, 0.0, 1.0 });
+  this->Opacity->AddPoint(1.0, 0.0);
+  EXPECT_LT(GetDifference(this->DrawLabels(this->Mapper), without), 0.01);
+  // A label without an annotation has the look of NaN.
+  this->Colors->SetAnnotations(nullptr, nullptr);
+  for (const double label : { 0.0, 1.0, 5.0 })
+  {
+    this->Colors->SetAnnotation(label, "known");
+  }
+  this->Colors->SetNanColor(0.0, 1.0, 0.0);
+  EXPECT_LT(FindMost(this->DrawLabels(this->Mapper), 2), 1.0);
+  EXPECT_NEAR(FindMost(this->DrawLabels(this->Mapper), 1), FindMost(without, 2), 1.0);
+  this->Colors->SetNanOpacity(0.0);
+  EXPECT_EQ(FindMost(this->DrawLabels(this->Mapper), 1), 0.0);
+}
+
+TEST_F(VolumeMapperOfLabels, FacesOfCutsShowThem)
+{
+  this->Colors->IndexedLookupOn();
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(-0.3, -0.31, -0.9);
+  this->Mapper->AddClippingPlane(plane);
+  this->Mapper->CappingOn();
+  this->Mapper->CapOpacityOff();
+  const auto pixels = this->DrawLabels(this->Mapper);
+  for (vtkIdType pixel = 0; pixel < pixels->GetNumberOfTuples(); ++pixel)
+  {
+    ASSERT_EQ(pixels->GetTypedComponent(pixel, 1), 0) << pixel;
+  }
+  EXPECT_EQ(FindMost(pixels, 0), 255.0);
+  EXPECT_EQ(FindMost(pixels, 2), 255.0);
 }
 
 } // namespace
