@@ -10,7 +10,9 @@
  * It stands in for vtkGPUVolumeRayCastMapper and, for AMR, for vtkAMRVolumeMapper: the blend mode Composite (the
  * default) shows the volume as a medium, by the color and opacity functions and the unit distance of the
  * vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of AverageIPScalarRange) and additive show what they
- * show there. ScalarMode and SelectScalarArray() choose the array. Interpolation is trilinear always. Shading is
+ * show there. ScalarMode and SelectScalarArray() choose the array. In the blend mode Composite, the property's
+ * InterpolationType counts, and an IndexedLookup of its color function makes categories; values of cells, of AMR and
+ * of hyper tree grids are trilinear always, and so are those of all other modes. Shading is
  * VTK's, also gradient opacity; with shadows and ambient occlusion of the light options, volumes shade themselves.
  * The blend mode Slice is not supported; the mapper warns about it.
  *
