@@ -16,8 +16,9 @@ function (dsm_join result how decorators)
 </Expression></PropertyWidgetDecorator>" PARENT_SCOPE)
 endfunction ()
 
-# Makes decorators of the panel from conditions, all of which must hold: PROPERTY=VALUE or PROPERTY!=VALUE. These may be
-# joined by & (all hold), and what is so joined by | (any holds). Some conditions have a name.
+# Makes decorators of the panel from conditions, all of which must hold: PROPERTY=VALUE or PROPERTY!=VALUE; PROPERTY.INDEX
+# is one of its elements. These may be joined by & (all hold), and what is so joined by | (any holds). Some conditions
+# have a name.
 # `mode`: visibility or enabled_state.
 set(DSM_CONDITION_isosurfaces "Representation=DSM Ray Traced&DSMShow=0")
 set(DSM_CONDITION_surface "Representation=DSM Ray Traced&DSMShow=1")
@@ -43,15 +44,18 @@ function (dsm_when result mode)
       set(decorators "")
       string(REPLACE "&" ";" parts "${alternative}")
       foreach (part IN LISTS parts)
-        if (NOT part MATCHES "^([A-Za-z]+)(!?)=(.+)$")
+        if (NOT part MATCHES "^([A-Za-z]+)\\.?([0-9]*)(!?)=(.+)$")
           message(FATAL_ERROR "'${part}' of the condition '${condition}' is neither PROPERTY=VALUE nor a name.")
         endif ()
-        set(inverse "")
+        set(further "")
         if (CMAKE_MATCH_2)
-          set(inverse " inverse=\"1\"")
+          set(further " index=\"${CMAKE_MATCH_2}\"")
+        endif ()
+        if (CMAKE_MATCH_3)
+          string(APPEND further " inverse=\"1\"")
         endif ()
         string(APPEND decorators "<PropertyWidgetDecorator type=\"GenericDecorator\" mode=\"${mode}\"\
- property=\"${CMAKE_MATCH_1}\" value=\"${CMAKE_MATCH_3}\"${inverse} />")
+ property=\"${CMAKE_MATCH_1}\" value=\"${CMAKE_MATCH_4}\"${further} />")
       endforeach ()
       if (count GREATER 1 AND alternative MATCHES "&")
         dsm_join(decorators and "${decorators}")
@@ -140,6 +144,12 @@ function (dsm_define_property result name isPage)
   elseif (type STREQUAL "range")
     set(kind Double)
     set(count 2)
+  elseif (type STREQUAL "numbers")
+    set(kind Double)
+    set(count 0)
+    set(command "Add${DSM_${name}_METHOD}")
+    set(further " clean_command=\"RemoveAll${DSM_${name}_METHOD}s\" number_of_elements_per_command=\"1\"\
+ repeat_command=\"1\"")
   elseif (DSM_${name}_CHOICES)
     set(kind Double)
     string(APPEND command Choice)
@@ -176,9 +186,12 @@ function (dsm_define_property result name isPage)
         " proxy=\"DSMRayTracerSettings\" unlink_if_modified=\"${unlink}\" />")
     endif ()
   endif ()
+  if (NOT type STREQUAL "numbers") # which are none at first
+    set(default " default_values=\"${default}\"")
+  endif ()
   string(REPLACE "<" "&lt;" text "${DSM_${name}_TEXT}")
   set(${result} "<${kind}VectorProperty name=\"DSM${name}\" label=\"${label}\"${further}\
- number_of_elements=\"${count}\" default_values=\"${default}\">${domain}\
+ number_of_elements=\"${count}\"${default}>${domain}\
 <Documentation>${text}</Documentation><Hints>${hints}</Hints></${kind}VectorProperty>\n" PARENT_SCOPE)
 endfunction ()
 

@@ -7,7 +7,8 @@
 #            voxels, volume, slices, mesh: a property of displays of volumes, of those as DSM Volume or DSM Slices only,
 #            or of meshes
 #   METHOD   Set<METHOD> in C++ (Select<METHOD> in displays, of an array); NAME by default. The property is DSM<NAME>.
-#   TYPE     bool, int, double, enum, directory, range (two numbers) or array (its name)
+#            Of numbers: Add<METHOD>, RemoveAll<METHOD>s and Get<METHOD>s.
+#   TYPE     bool, int, double, enum, directory, range (two numbers), numbers (any number of them) or array (its name)
 #   DEFAULT  value
 #   RANGE    least and greatest valid number; without the second, unlimited
 #   SLIDER   range of the panel's slider, where it has one
@@ -198,6 +199,24 @@ function (dsm_write_display_mapper DSM_KIND DSM_SUPERCLASS)
     elseif (NOT least STREQUAL "")
       set(set "vtkSetClampMacro(${method}, ${argument}, ${least}, ${most});")
     endif ()
+    if (DSM_${name}_TYPE STREQUAL "numbers")
+      set(set "void Add${method}(double value)
+  {
+    this->${method}s.push_back(value);
+    this->Modified();
+  }
+  void RemoveAll${method}s()
+  {
+    this->${method}s.clear();
+    this->Modified();
+  }")
+      set(get "const std::vector<double>& Get${method}s() const { return this->${method}s; }")
+      set(member "std::vector<double> ${method}s;")
+      set(members)
+      string(APPEND DSM_COPIED "      this->${method}s = other->${method}s;\n      this->Modified();\n")
+      string(APPEND DSM_PRINTED "    os << indent << \"${method}s:\";\n    for (const double value : this->${method}s)
+    {\n      os << \" \" << value;\n    }\n    os << \"\\n\";\n")
+    endif ()
     dsm_enumerate(enum ${name} ${name}s)
     string(STRIP "${DSM_${name}_TEXT} ${DSM_${name}_DETAILS}" text)
     string(APPEND DSM_DECLARATIONS "\n  ///@{\n  /**\n   * ${text}\n   */\n"
@@ -243,6 +262,12 @@ function (dsm_write_display DSM_KIND DSM_SUPERCLASS)
           "\n    ${mapper}->${method}OnCells(association == vtkDataObject::FIELD_ASSOCIATION_CELLS);")
       endif ()
       set(parameters "int, int, int, int${association}, const char* name")
+    elseif (DSM_${name}_TYPE STREQUAL "numbers")
+      set(setter "Add${DSM_${name}_METHOD}")
+      set(parameters "double value")
+      set(effect "${mapper}->${setter}(value);")
+      set(remover "RemoveAll${DSM_${name}_METHOD}s")
+      string(APPEND DSM_METHODS "  void ${remover}()\n  {\n    ${mapper}->${remover}();\n  }\n")
     endif ()
     string(APPEND DSM_METHODS "  void ${setter}(${parameters})\n  {\n    ${effect}\n  }\n")
   endforeach ()

@@ -13,8 +13,8 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 PAGE, PROJECT, OUTPUT, *DEFINITIONS = (pathlib.Path(path) for path in sys.argv[1:])
-SHARED = ("BlendMode", "ScalarOpacityUnitDistance", "Shade", "VolumeAnisotropy", "UseSeparateOpacityArray",
-          "OpacityArrayName", "OpacityComponent", "IsosurfaceValues")  # of ParaView's Volume
+SHARED = ("BlendMode", "ScalarOpacityUnitDistance", "InterpolationType", "Shade", "VolumeAnisotropy",
+          "UseSeparateOpacityArray", "OpacityArrayName", "OpacityComponent", "IsosurfaceValues")  # of ParaView's Volume
 # The table of a property is the first whose pattern matches its proxy and name. Rows are in the order of definitions.
 TABLES = {
     "clipping": r".*:DSM(Clip|Crop|Cap)\w*",
@@ -67,7 +67,9 @@ def describe(element):
         if kind == "BoundsDomain":
             default = FROM_DATA[domain.get("default_mode") or domain.get("mode")]
     if element.get("element_types", "").startswith("0 0 0 0"):
-        values, default = "point array", "None" if "None" in default else "from the data"
+        hasCells = any(domain.get("input_domain_name") == "input_array_values" for domain in element)
+        values = "point or cell array" if hasCells else "point array"
+        default = "None" if "None" in default else "from the data"
     if default == "none":
         default = "from the data"
     return (default or "empty"), values

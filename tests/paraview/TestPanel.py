@@ -32,7 +32,8 @@ view = create_view()
 SLICES = [f"DSMSlice{axis}{part}" for axis in "XYZ" for part in ("", "Index", "Indices")] + ["DSMSlicePlane"]
 LIGHT = ["DSMShadows", "DSMAmbientOcclusionSamples", "DSMSamplesPerPixel"]
 ISOSURFACES = ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponent", "DSMIgnoreValues", "DSMValidRange",
-               "DSMIsoValue", "DSMIsoValueAutomatic", "DSMValueRange", "DSMIsoValues"]
+               "DSMMaskArray", "DSMMaskRange", "DSMMaskValues", "DSMIsoValue", "DSMIsoValueAutomatic",
+               "DSMValueRange", "DSMIsoValues"]
 # Of surfaces, the panel shows DSMShow, and what depends on it, only where there are blocks that have isosurfaces.
 for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True), (simple.Cone(), ISOSURFACES, False)):
     names = list_panel(simple.Show(source, view))

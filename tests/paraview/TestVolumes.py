@@ -343,3 +343,41 @@ check_equal(render(view), torn, "all look as before", tolerance=0)
 check(get_rows(traced)[0]["Publications"] == built, "and no bricks were made for their looks")
 for source in [contour, blocks, *wavelets]:
     simple.Delete(source)
+
+# A mask hides cells by the values of another array, also where each rank has a part of it. The image's own array as a
+# mask hides what ignored values do.
+masked = image_source(
+    """
+image.SetExtent(piece)
+i, j, k = points(piece)
+add(image, np.floor(i / 5.0) % 3.0, 'labels')
+add(image, distance(piece))
+cells = points([piece[0], piece[1] - 1, piece[2], piece[3] - 1, piece[4], piece[5] - 1])
+array = numpy_to_vtk(np.floor(cells[1] / 4.0).astype(np.int16), deep=True)
+array.SetName('slabs')
+image.GetCellData().AddArray(array)
+""",
+    in_parts=True,
+)
+simple.HideAll(view)
+display = show(masked, view, [0.8], "f")
+place_camera(view)
+simple.ColorBy(display, ("POINTS", "f"))
+for kind in (REPRESENTATION, "DSM Volume", "DSM Slices"):
+    display.Representation = kind
+    pictures = [render(view)]
+    for mask, range_, values in ((["POINTS", "labels"], [1.0, 2.0], []), (["POINTS", "labels"], [1.0, 2.0], [0.0, 2.0]),
+                                 (["CELLS", "slabs"], [0.0, 0.0], [1.0, 3.0, 4.0]), (["POINTS", "f"], [0.3, 1.1], [])):
+        display.DSMMaskArray, display.DSMMaskRange, display.DSMMaskValues = mask, range_, values
+        pictures.append(render(view, f"Mask{kind.split()[-1]}{len(pictures)}"))
+        different = (abs(pictures[-1] - pictures[-2]).max(axis=2) > 8).mean()
+        check(different > 0.01, f"{kind} with the mask {mask}: {100 * different:.2f} % of the pixels are others")
+    display.DSMMaskArray = ["POINTS", "None"]
+    check_equal(render(view), pictures[0], f"{kind} without a mask", tolerance=0)
+    display.DSMIgnoreValues, display.DSMValidRange = 1, [0.3, 1.1]
+    check_equal(render(view), pictures[-1], f"{kind}: ignored values are a mask", tolerance=0)
+    display.DSMIgnoreValues = 0
+with Messages() as messages:
+    display.DSMMaskArray = ["CELLS", "labels"]
+    render(view)
+check(get_ranks() > 1 or "mask array 'labels'" in messages.text, f"a mask array that is not there: {messages.text}")

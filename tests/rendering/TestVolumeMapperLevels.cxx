@@ -230,6 +230,10 @@ TEST_F(VolumeMapperLevels, WhatCannotBeShownIsExplained)
                         return grid;
                       }),
     "is not on the lattice of its level");
+  this->Mapper->SetMaskArray("distance");
+  this->Mapper->SetMaskArrayOnCells(true);
+  this->ExpectError(MakeTrees(2), "cannot hide cells of AMR or hyper tree grids");
+  this->Mapper->SetMaskArray("");
   this->ExpectError(MakeTrees(2, false, 2), "2 dimensions");
   vtkNew<vtkMultiBlockDataSet> flat;
   flat->SetBlock(0, MakeTrees(2, false, 2));

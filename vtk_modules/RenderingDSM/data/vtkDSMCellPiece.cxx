@@ -7,13 +7,16 @@
 #include "vtkDataSet.h"
 
 #include <cstring>
+#include <utility>
 
 vtkDSMCellPiece::vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
-  const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid)
+  const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid,
+  std::optional<vtkDSMCellMask> mask)
   : Array(array)
   , Component(component)
   , Masked(hasMask || valid.Exclude(vtkDSMImagePiece::GetScalarType(array, component)))
   , Valid(valid)
+  , Mask(std::move(mask))
 {
   const bool isOne = component >= 0 || array->GetNumberOfComponents() == 1;
   for (int part = 0; part < (isOne ? 1 : array->GetNumberOfComponents()); ++part)
@@ -38,6 +41,11 @@ bricks::Box vtkDSMCellPiece::GetReach() const
 void vtkDSMCellPiece::ReadStates(const bricks::Box& cells, std::uint8_t* out) const
 {
   this->Parts.front().ReadCellStates(cells, out);
+  if (this->Mask)
+  {
+    static_assert(NoData == 0, "what masks set");
+    this->Mask->Apply(cells, out);
+  }
   const bricks::ScalarType type = vtkDSMImagePiece::GetScalarType(this->Array, this->Component);
   if (!this->Valid.Exclude(type))
   {

@@ -5,9 +5,11 @@
 #include "DSMBricks/base/ValidValues.h"
 #include "DSMBricks/build/CellReader.h"
 #include "DSMBricks/build/LatticePlan.h"
+#include "vtkDSMCellMask.h"
 
 #include "vtkSmartPointer.h"
 
+#include <optional>
 #include <vector>
 
 class vtkDSMImagePiece;
@@ -19,9 +21,11 @@ class vtkDataSet;
 class vtkDSMCellPiece final : public bricks::CellReader
 {
 public:
-  /// `component`: see vtkDSMImagePiece; `hasMask`: its PieceInfo's. Cells with a missing value hold no data.
+  /// `component`: see vtkDSMImagePiece; `hasMask`: its PieceInfo's, or there is a mask. Cells with a missing value, or
+  /// hidden by the mask (may be none), hold no data.
   vtkDSMCellPiece(vtkDataSet* image, vtkDataArray* array, int component,
-    const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid = {});
+    const bricks::LatticePlan::Member& place, bool hasMask, const bricks::ValidValues& valid = {},
+    std::optional<vtkDSMCellMask> mask = {});
   ~vtkDSMCellPiece() override;
 
   bricks::Box GetCells() const override;
@@ -38,6 +42,7 @@ private:
   int Component;
   bool Masked;
   bricks::ValidValues Valid;
+  std::optional<vtkDSMCellMask> Mask;
   std::vector<vtkDSMImagePiece> Parts; ///< one a component
 };
 

@@ -146,14 +146,12 @@ vtkDSMImageArrays::Choice vtkDSMImageArrays::Normalize(const Choice& choice) con
   {
     return choice;
   }
-  if (components == 1)
-  {
-    return { choice.Name, 0, choice.OnCells, choice.IsAveraged, choice.Valid };
-  }
+  Choice normal = choice;
   // ParaView's panels number the magnitude after the last component.
-  return { choice.Name,
-    choice.Component == components ? vtkDSMImagePiece::Magnitude : choice.Component, choice.OnCells,
-    choice.IsAveraged, choice.Valid };
+  normal.Component = components == 1 ? 0
+    : choice.Component == components ? vtkDSMImagePiece::Magnitude
+                                     : choice.Component;
+  return normal;
 }
 
 int vtkDSMImageArrays::CountComponents(const Choice& choice) const

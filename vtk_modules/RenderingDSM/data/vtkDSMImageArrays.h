@@ -23,6 +23,27 @@ class vtkDataObject;
 class vtkDSMImageArrays
 {
 public:
+  /// Values of another array whose cells are shown: all others hold no data. Of an array of points, all corners of a
+  /// shown cell have such values.
+  struct CellMask
+  {
+    std::string Name;     ///< empty: all cells are shown
+    bool OnCells = false; ///< the cells' array of this name, not the points', is meant
+    ///@{
+    /// The range that is shown, while Values is empty.
+    double Lowest = 0.0;
+    double Highest = 0.0;
+    ///@}
+    std::vector<double> Values;
+
+    bool operator==(const CellMask& other) const
+    {
+      return this->Name == other.Name && this->OnCells == other.OnCells &&
+        this->Lowest == other.Lowest && this->Highest == other.Highest &&
+        this->Values == other.Values;
+    }
+  };
+
   /// One array, as the user chose it.
   struct Choice
   {
@@ -34,12 +55,17 @@ public:
     bool IsAveraged = false;
     /// The user's; a file's own missing value is in Info.
     bricks::ValidValues Valid = {};
+    CellMask Mask = {};
+
+    bool HasMask() const { return !this->Mask.Name.empty(); }
+    /// The mask's array, of whose components the first counts.
+    Choice GetMaskArray() const { return { this->Mask.Name, 0, this->Mask.OnCells }; }
 
     bool operator==(const Choice& other) const
     {
       return this->Name == other.Name && this->Component == other.Component &&
         this->OnCells == other.OnCells && this->IsAveraged == other.IsAveraged &&
-        this->Valid == other.Valid;
+        this->Valid == other.Valid && this->Mask == other.Mask;
     }
   };
 

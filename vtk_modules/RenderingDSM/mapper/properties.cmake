@@ -12,6 +12,18 @@ dsm_setting(IgnoreValues OWNER voxels TYPE bool DEFAULT 0
 dsm_setting(ValidRange OWNER voxels TYPE range DEFAULT "-1.7976931348623157e308 1.7976931348623157e308"
   LABEL "Valid Range" PANEL advanced WHEN isosurfaces|volume|slices DSMIgnoreValues=1
   TEXT "Lowest and highest value that is not ignored.")
+dsm_setting(MaskArray OWNER voxels TYPE array ARRAYS input_array_values
+  LABEL "Mask Array" PANEL advanced WHEN isosurfaces|volume|slices
+  TEXT "Array whose values choose the cells that are shown. With a point array, a cell is shown if all of its corners
+    have chosen values. With a cell array, if the cell has one."
+  DETAILS "Of image data and rectilinear grids. Of several components, the first counts. Hidden cells do not count in
+    the means of cells at points. Empty: no mask.")
+dsm_setting(MaskRange OWNER voxels TYPE range DEFAULT "-1.7976931348623157e308 1.7976931348623157e308"
+  LABEL "Mask Range" PANEL advanced WHEN isosurfaces|volume|slices DSMMaskArray.4!=None
+  TEXT "Lowest and highest value of the mask array that is shown, while Mask Values is empty.")
+dsm_setting(MaskValues OWNER voxels METHOD MaskValue TYPE numbers
+  LABEL "Mask Values" PANEL advanced WHEN isosurfaces|volume|slices DSMMaskArray.4!=None
+  TEXT "Values of the mask array that are shown, such as labels. A list that is not empty replaces Mask Range.")
 dsm_setting(Cap OWNER voxels METHOD Capping TYPE bool DEFAULT 0
   LABEL "Cap" PANEL default GROUP cut
   TEXT "Show the faces where the clipping plane and the cropping box cut the data. The values on the faces determine

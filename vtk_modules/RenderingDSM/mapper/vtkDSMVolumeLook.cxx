@@ -333,7 +333,10 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
   if (this->HasOpacityArray())
   {
     const bool onCells = mapper->GetOpacityArrayOnCells();
-    return { { mapper->GetOpacityArray(), mapper->GetOpacityComponent(), onCells, onCells }, iso };
+    vtkDSMVolumeData::Choice opacity{ mapper->GetOpacityArray(), mapper->GetOpacityComponent(),
+      onCells, onCells };
+    opacity.Mask = iso.Mask;
+    return { opacity, iso };
   }
   const Components kind = this->GetComponents(arrays);
   const int components = arrays.CountComponents(iso);
@@ -369,6 +372,7 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
     if (isIso || this->IsSlicesOnly())
     {
       color.Valid = iso.Valid;
+      color.Mask = iso.Mask;
     }
     shown.push_back(color);
   }
@@ -391,6 +395,12 @@ vtkDSMVolumeData::Choice vtkDSMVolumeLook::GetIsoChoice(const vtkDSMImageArrays&
     const double* const range = this->Mapper->GetValidRange();
     choice.Valid.Lowest = range[0];
     choice.Valid.Highest = range[1];
+  }
+  if (!this->Mapper->GetMaskArray().empty())
+  {
+    const double* const range = this->Mapper->GetMaskRange();
+    choice.Mask = { this->Mapper->GetMaskArray(), this->Mapper->GetMaskArrayOnCells(), range[0],
+      range[1], this->Mapper->GetMaskValues() };
   }
   return choice;
 }

@@ -6,10 +6,12 @@
 #include "DSMBricks/build/ValidSource.h"
 #include "DSMBricks/build/VoxelBrickBuilder.h"
 #include "DSMCore/publish/SegmentUpdate.h"
+#include "vtkDSMCellMask.h"
 #include "vtkDSMCellPiece.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLatticeValues.h"
+#include "vtkDSMMaskedPiece.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -18,6 +20,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -51,6 +54,10 @@ void vtkDSMLatticePart::AddContent(const Choice& choice, bricks::ByteHash& hash)
       Info info;
       const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
       this->AddArray(vtkDSMImageArrays::Find(image, choice, info), hash);
+      if (choice.HasMask())
+      {
+        this->AddArray(vtkDSMImageArrays::Find(image, choice.GetMaskArray(), info), hash);
+      }
       this->AddArray(image->GetPointData()->GetAbstractArray(ghosts), hash);
       this->AddArray(image->GetCellData()->GetAbstractArray(ghosts), hash);
     }
@@ -181,7 +188,7 @@ std::shared_ptr<vtkDSMLatticePart::Values> vtkDSMLatticePart::CreateValues(
   const Request& request, const std::vector<Info>& infos) const
 {
   std::set<bricks::ScalarType> types;
-  bool masked = this->HasGaps(infos);
+  bool masked = request.Array.HasMask() || this->HasGaps(infos);
   for (const Info& info : infos)
   {
     if (info.IsUsable())
@@ -219,10 +226,16 @@ vtkDSMLatticePart::Sources vtkDSMLatticePart::CreateSources(
       if (vtkDataArray* array = vtkDSMImageArrays::Find(image, choice, info))
       {
         const Piece& piece = this->Pieces[static_cast<std::size_t>(member.Piece)];
-        sources.push_back(bricks::ValidSource::Make(
+        auto source = bricks::ValidSource::Make(
           std::make_shared<vtkDSMImagePiece>(
             image, array, choice.Component, member, piece.Info.HasMask != 0, choice.OnCells),
-          bricks, info.Valid));
+          bricks, info.Valid);
+        if (choice.HasMask())
+        {
+          source = std::make_shared<vtkDSMMaskedPiece>(
+            std::move(source), vtkDSMCellMask(image, choice, member));
+        }
+        sources.push_back(std::move(source));
       }
     }
   }
@@ -252,7 +265,8 @@ vtkDSMLatticePart::Sources vtkDSMLatticePart::AverageCells(
         const bricks::LatticePlan::Member& member = members[index];
         const auto number = static_cast<std::size_t>(member.Piece);
         const Info& all = infos[number];
-        const bool hasMask = this->Pieces[number].Info.HasMask != 0 || all.Valid.Exclude(all.Type);
+        const bool hasMask = request.Array.HasMask() || this->Pieces[number].Info.HasMask != 0 ||
+          all.Valid.Exclude(all.Type);
         pieces.push_back({ 0, all.IsUsable(), hasMask, member.Cells, member.Cells });
         vtkDataSet* const image = this->FindOwn(member);
         Info info;
@@ -260,8 +274,13 @@ vtkDSMLatticePart::Sources vtkDSMLatticePart::AverageCells(
           image ? vtkDSMImageArrays::Find(image, request.Array, info) : nullptr;
         if (array)
         {
+          std::optional<vtkDSMCellMask> mask;
+          if (request.Array.HasMask())
+          {
+            mask.emplace(image, request.Array, member);
+          }
           const auto piece = std::make_shared<const vtkDSMCellPiece>(
-            image, array, request.Array.Component, member, hasMask, info.Valid);
+            image, array, request.Array.Component, member, hasMask, info.Valid, std::move(mask));
           mine.push_back(
             { static_cast<std::int64_t>(index), messenger.GetRank(), piece->GetReach() });
           own[index] = std::make_shared<bricks::CellAverages>(piece);

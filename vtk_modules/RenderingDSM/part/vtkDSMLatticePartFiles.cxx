@@ -58,9 +58,10 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMLatticePart::FindFile(
   const Choice& choice = request.Array;
   const bricks::LatticePlan::Member& first = this->Lattice.Members.front();
   // Values at points; what colors by cells or by colors themselves is cut by the ranks that have it, and so are
-  // means of cells of which some are missing.
+  // means of cells of which some are missing, and what a mask hides parts of.
   const bricks::ValidValues& valid = infos[static_cast<std::size_t>(first.Piece)].Valid;
-  if (this->HasGaps(infos) || lattice.IsOfCells() || choice.Component == vtkDSMImagePiece::Color ||
+  if (choice.HasMask() || this->HasGaps(infos) || lattice.IsOfCells() ||
+    choice.Component == vtkDSMImagePiece::Color ||
     (choice.OnCells && valid.Exclude(lattice.GetScalarType())))
   {
     return nullptr;

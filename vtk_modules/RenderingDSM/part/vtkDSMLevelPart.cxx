@@ -140,6 +140,12 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMLevelPart::Publish(
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const Choice choice = this->Find(request.Array);
+  if (request.Array.HasMask())
+  {
+    throw dsm::Error("The mask array '" + request.Array.Mask.Name +
+      "' cannot hide cells of AMR or hyper tree grids. Set Mask Array to None, or apply Threshold "
+      "or Resample To Image first.");
+  }
   if (choice.Component == vtkDSMImagePiece::Color)
   {
     throw dsm::Error("The colors in the array '" + choice.Name +

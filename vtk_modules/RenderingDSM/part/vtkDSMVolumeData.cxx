@@ -234,6 +234,17 @@ std::uint64_t vtkDSMVolumeData::HashContent(const Choice& choice) const
   hash.Add(&choice.OnCells, sizeof(choice.OnCells));
   hash.Add(&choice.IsAveraged, sizeof(choice.IsAveraged));
   hash.Add(&choice.Valid, sizeof(choice.Valid));
+  if (choice.HasMask())
+  {
+    const vtkDSMImageArrays::CellMask& mask = choice.Mask;
+    const std::uint64_t count = mask.Values.size();
+    hash.Add(mask.Name.data(), mask.Name.size());
+    hash.Add(&mask.OnCells, sizeof(mask.OnCells));
+    hash.Add(&mask.Lowest, sizeof(mask.Lowest));
+    hash.Add(&mask.Highest, sizeof(mask.Highest));
+    hash.Add(&count, sizeof(count));
+    hash.Add(mask.Values.data(), mask.Values.size() * sizeof(double));
+  }
   for (const auto& part : this->Parts)
   {
     part->AddContent(choice, hash);
@@ -277,6 +288,8 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(
     this->Arrays.Refuse(request.Array, request.Purpose, all);
   }
 
+  this->FindMask(request.Array);
+
   dsm::Publications& publications = this->Group->GetPublications();
   if (const auto known = publications.Find<Publication>(messenger, published->Content))
   {
@@ -289,6 +302,31 @@ std::shared_ptr<const vtkDSMVolumeData::Publication> vtkDSMVolumeData::Publish(
   }
   publications.Add<Publication>(published->Content, published);
   return published;
+}
+
+void vtkDSMVolumeData::FindMask(const Choice& choice) const
+{
+  if (!choice.HasMask())
+  {
+    return;
+  }
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  std::vector<vtkDSMPart::Info> mine;
+  messenger.RunTogether("Reading the mask array",
+    [&]
+    {
+      for (const auto& part : this->Parts)
+      {
+        const std::vector<vtkDSMPart::Info> infos = part->FindArrays(choice.GetMaskArray());
+        mine.insert(mine.end(), infos.begin(), infos.end());
+      }
+    });
+  const std::vector<vtkDSMPart::Info> all = vtkDSMGather::Items(messenger, mine);
+  if (!all.empty() &&
+    std::none_of(all.begin(), all.end(), [](const auto& info) { return info.IsUsable(); }))
+  {
+    this->Arrays.Refuse(choice.GetMaskArray(), "mask array", all);
+  }
 }
 
 bool vtkDSMVolumeData::MayTakeOver(const std::shared_ptr<const Publication>& old) const

@@ -70,6 +70,9 @@ public:
     const Publication& finest, const vtkDSMPart::Request& request) const;
 
 private:
+  /// Collective. Throws where the choice has a mask, but no piece has its array.
+  void FindMask(const Choice& choice) const;
+
   std::shared_ptr<vtkDSMRankGroup> Group;
   bool Seams = false;
   std::vector<std::unique_ptr<vtkDSMPart>> Parts;
