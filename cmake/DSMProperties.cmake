@@ -16,9 +16,9 @@ function (dsm_join result how decorators)
 </Expression></PropertyWidgetDecorator>" PARENT_SCOPE)
 endfunction ()
 
-# Makes decorators of the panel from conditions, all of which must hold: PROPERTY=VALUE or PROPERTY!=VALUE; PROPERTY.INDEX
-# is one of its elements. These may be joined by & (all hold), and what is so joined by | (any holds). Some conditions
-# have a name.
+# Makes decorators of the panel from conditions, all of which must hold: PROPERTY=VALUE or PROPERTY!=VALUE, where
+# PROPERTY.INDEX is an element of a property. These may be joined by & (all hold), and what is so joined by | (any
+# holds). Some conditions have a name.
 # `mode`: visibility or enabled_state.
 set(DSM_CONDITION_isosurfaces "Representation=DSM Ray Traced&DSMShow=0")
 set(DSM_CONDITION_surface "Representation=DSM Ray Traced&DSMShow=1")

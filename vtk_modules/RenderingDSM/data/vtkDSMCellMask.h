@@ -12,8 +12,8 @@
 
 class vtkDataSet;
 
-/// The cells of an image that the values of a mask array show. Copies no values; safe from any thread while the image is
-/// not modified.
+/// The cells of an image that the values of a mask array show. Copies no values; safe from any thread while the image
+/// is not modified.
 class vtkDSMCellMask
 {
 public:
@@ -27,7 +27,7 @@ public:
   void Apply(const bricks::Box& cells, std::uint8_t* out) const;
 
 private:
-  std::optional<vtkDSMImagePiece> Array; ///< none: it is not there
+  std::optional<vtkDSMImagePiece> Array; ///< none: it does not exist
   bricks::ScalarType Type = bricks::ScalarType::Float32;
   vtkDSMImageArrays::CellMask Shown; ///< its values ascend
 };

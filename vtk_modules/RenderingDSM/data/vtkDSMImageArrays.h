@@ -23,8 +23,8 @@ class vtkDataObject;
 class vtkDSMImageArrays
 {
 public:
-  /// Values of another array whose cells are shown: all others hold no data. Of an array of points, all corners of a
-  /// shown cell have such values.
+  /// Values of another array whose cells are shown: all others hold no data. If the array is of points, all corners of
+  /// a shown cell have such values.
   struct CellMask
   {
     std::string Name;     ///< empty: all cells are shown
