@@ -148,6 +148,8 @@ function (dsm_define_property result name isPage)
     set(kind Double)
     set(count 0)
     set(command "Add${DSM_${name}_METHOD}")
+    # Without, the panel shows no label.
+    set(hints "<ShowComponentLabels><ComponentLabel component=\"0\" label=\"${label}\" /></ShowComponentLabels>")
     set(further " clean_command=\"RemoveAll${DSM_${name}_METHOD}s\" number_of_elements_per_command=\"1\"\
  repeat_command=\"1\"")
   elseif (DSM_${name}_CHOICES)
