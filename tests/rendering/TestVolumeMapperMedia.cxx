@@ -10,6 +10,7 @@
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkLight.h"
+#include "vtkMatrix4x4.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkTestErrorObserver.h"
@@ -96,6 +97,172 @@ TEST_F(VolumeMapper, FacesOfCutsHideProjections)
   {
     EXPECT_EQ(GetDifference(draw(mode), composite), 0.0) << "blend mode " << mode;
   }
+}
+
+/// A function that is trilinear in a box of few, long cells.
+class VolumeMapperIntegral : public VolumeMapper
+{
+protected:
+  static constexpr int Width = 40;
+  static constexpr int Height = 30;
+  static constexpr double Box[6] = { -4.0, 4.0, -3.0, 3.0, -5.0, 5.0 };
+
+  static double Evaluate(const double* p)
+  {
+    return 2.0 + 0.3 * p[0] - 0.2 * p[1] * p[2] + 0.05 * p[0] * p[1] * p[2];
+  }
+
+  void SetUp() override
+  {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(17, 4, 11);
+    image->SetSpacing(0.5, 2.0, 1.0);
+    image->SetOrigin(Box[0], Box[2], Box[4]);
+    vtkNew<vtkDoubleArray> values;
+    values->SetName("distance");
+    for (vtkIdType point = 0; point < image->GetNumberOfPoints(); ++point)
+    {
+      values->InsertNextValue(Evaluate(image->GetPoint(point)));
+    }
+    image->GetPointData()->SetScalars(values);
+    this->Range[0] = values->GetRange()[0];
+    this->Range[1] = values->GetRange()[1];
+    this->Mapper->SetInputData(image);
+    this->Mapper->SetNumberOfIsoValues(0);
+    this->Mapper->SetBlendModeToIntegral();
+    vtkNew<vtkColorTransferFunction> colors;
+    colors->AddRGBPoint(this->Range[0], 0.0, 1.0, 0.0);
+    colors->AddRGBPoint(this->Range[1], 1.0, 0.0, 0.0);
+    vtkNew<vtkVolumeProperty> property;
+    property->SetInterpolationTypeToLinear();
+    property->SetColor(colors);
+    this->Volume->SetProperty(property);
+    this->Volume->SetScale(Scale);
+    this->Place();
+    this->Renderer->AddVolume(this->Volume);
+  }
+
+  /// The integral along the ray through the middle of a pixel, in world space; 0 where it misses the box.
+  double Integrate(int x, int y)
+  {
+    vtkNew<vtkMatrix4x4> toWorld;
+    toWorld->DeepCopy(this->Renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+      static_cast<double>(Width) / Height, -1.0, 1.0));
+    toWorld->Invert();
+    vtkNew<vtkMatrix4x4> toData;
+    toData->DeepCopy(this->Volume->GetMatrix());
+    toData->Invert();
+    double ends[2][4];
+    for (int end = 0; end < 2; ++end)
+    {
+      const double clip[4] = { 2.0 * (x + 0.5) / Width - 1.0, 2.0 * (y + 0.5) / Height - 1.0,
+        2.0 * end - 1.0, 1.0 };
+      toWorld->MultiplyPoint(clip, ends[end]);
+      toData->MultiplyPoint(ends[end], ends[end]);
+      for (double& coordinate : ends[end])
+      {
+        coordinate /= ends[end][3];
+      }
+    }
+    double first = 0.0;
+    double last = 1.0;
+    double length = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double way = ends[1][axis] - ends[0][axis];
+      const double low = (Box[2 * axis] - ends[0][axis]) / way;
+      const double high = (Box[2 * axis + 1] - ends[0][axis]) / way;
+      first = std::max(first, std::min(low, high));
+      last = std::min(last, std::max(low, high));
+      length += way * way;
+    }
+    if (first >= last)
+    {
+      return 0.0;
+    }
+    // Simpson's rule, which is exact.
+    double sum = 0.0;
+    for (int place = 0; place < 3; ++place)
+    {
+      double point[3];
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double t = first + 0.5 * place * (last - first);
+        point[axis] = (1.0 - t) * ends[0][axis] + t * ends[1][axis];
+      }
+      sum += (place == 1 ? 4.0 : 1.0) * Evaluate(point);
+    }
+    return sum / 6.0 * (last - first) * std::sqrt(length) * Scale;
+  }
+
+  static constexpr double Scale = 2.0;
+  double Range[2];
+};
+
+TEST_F(VolumeMapperIntegral, GivesTheNumbersAndColors)
+{
+  vtkNew<vtkImageData> image;
+  ASSERT_TRUE(this->Scene->TraceImage(Width, Height, image));
+  vtkDataArray* const integrals = image->GetPointData()->GetArray("integral");
+  ASSERT_NE(integrals, nullptr);
+  const double diagonal = Scale * std::sqrt(64.0 + 36.0 + 100.0);
+  const double least = std::min(this->Range[0], 0.0) * diagonal;
+  const double most = this->Range[1] * diagonal;
+  int met = 0;
+  for (int y = 0; y < Height; ++y)
+  {
+    for (int x = 0; x < Width; ++x)
+    {
+      const double expected = this->Integrate(x, y);
+      const vtkIdType pixel = y * Width + x;
+      EXPECT_NEAR(integrals->GetComponent(pixel, 0), expected, 1e-6 * most) << x << ", " << y;
+      if (std::abs(expected) > 1e-3 * most)
+      {
+        ++met;
+        const double red = 255.0 * (expected - least) / (most - least);
+        vtkDataArray* const colors = image->GetPointData()->GetScalars();
+        EXPECT_NEAR(colors->GetComponent(pixel, 0), red, 1.0) << x << ", " << y;
+        EXPECT_NEAR(colors->GetComponent(pixel, 1), 255.0 - red, 1.0) << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GT(met, 50);
+  EXPECT_LT(met, Width * Height - 50);
+}
+
+TEST_F(VolumeMapperIntegral, IsOfWhatIsKept)
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(this->Volume->GetCenter());
+  plane->SetNormal(0.3, 0.8, -0.2);
+  vtkNew<vtkImageData> image;
+  const auto trace = [&]
+  {
+    EXPECT_TRUE(this->Scene->TraceImage(Width, Height, image));
+    const vtkSmartPointer<vtkDataArray> integrals = image->GetPointData()->GetArray("integral");
+    return integrals;
+  };
+  const auto whole = trace();
+  this->Mapper->AddClippingPlane(plane);
+  const auto one = trace();
+  plane->SetNormal(-0.3, -0.8, 0.2);
+  const auto other = trace();
+  int divided = 0;
+  for (vtkIdType pixel = 0; pixel < whole->GetNumberOfTuples(); ++pixel)
+  {
+    const double parts[2] = { one->GetComponent(pixel, 0), other->GetComponent(pixel, 0) };
+    EXPECT_NEAR(parts[0] + parts[1], whole->GetComponent(pixel, 0), 1e-3);
+    divided += parts[0] != 0.0 && parts[1] != 0.0;
+  }
+  EXPECT_GT(divided, 50);
+}
+
+TEST_F(VolumeMapperIntegral, NumbersAreThereForThisBlendModeOnly)
+{
+  this->Mapper->SetBlendModeToComposite();
+  vtkNew<vtkImageData> image;
+  ASSERT_TRUE(this->Scene->TraceImage(Width, Height, image));
+  EXPECT_EQ(image->GetPointData()->GetArray("integral"), nullptr);
 }
 
 TEST_F(VolumeMapper, StandsInForTheRayCastMapper)

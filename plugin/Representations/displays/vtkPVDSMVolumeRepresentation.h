@@ -63,7 +63,7 @@ public:
   ///@}
 
   /**
-   * One of vtkVolumeMapper's blend modes, but Slice.
+   * One of vtkVolumeMapper's blend modes, but Slice, or vtkDSMVolumeMapper::INTEGRAL_BLEND.
    */
   void SetBlendMode(int mode);
 

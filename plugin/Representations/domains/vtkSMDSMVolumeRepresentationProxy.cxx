@@ -78,7 +78,7 @@ void ShowForVolumes(vtkSMProperty* property)
   }
 }
 
-/// ParaView offers three of the modes that its Volume has.
+/// ParaView offers three of the modes that its Volume has, and not those of DSM Volume alone.
 void OfferBlendModes(vtkSMProperty* property, vtkSMProperty* own)
 {
   auto* const offered = property ? property->FindDomain<vtkSMEnumerationDomain>() : nullptr;

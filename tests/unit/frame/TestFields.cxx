@@ -480,6 +480,29 @@ TYPED_TEST(FieldTest, MeanAndSum)
   }
 }
 
+TYPED_TEST(FieldTest, Integral)
+{
+  constexpr double longest = 3.0;
+  this->Check(
+    [&](const auto& publish, rt::Scene& scene)
+    {
+      rt::IntegralOf<typename TypeParam::FieldType> medium;
+      medium.Field = TypeParam::Create(publish(Hill));
+      medium.Colors = std::make_shared<const rt::ColorMap>(CreateColors());
+      medium.Longest = longest;
+      scene.Media = { GetMedium(medium) };
+    },
+    [&](const rt::Ray& ray) -> Expected
+    {
+      double first;
+      double last;
+      return Quadratic::FindWay(ray, first, last)
+        ? glm::dvec4(GetColor(Integrate(Hill, ray, first, last) / longest), 1.0)
+        : glm::dvec4(0.0);
+    },
+    2.0);
+}
+
 TYPED_TEST(FieldTest, SlicesShowValues)
 {
   const glm::dvec3 normal(0.5, 0.3, 1.0);

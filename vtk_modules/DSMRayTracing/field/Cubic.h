@@ -20,6 +20,12 @@ struct Cubic
     const double* c = this->Coefficients;
     return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
   }
+  /// The mean from 0 to 1.
+  double GetMean() const
+  {
+    const double* c = this->Coefficients;
+    return c[0] + c[1] / 2.0 + c[2] / 3.0 + c[3] / 4.0;
+  }
 };
 
 /// The places in (0, 1) where the derivative vanishes, ascending; returns how many.

@@ -19,8 +19,9 @@ struct ChannelSet
     Normal = 4,
     Albedo = 8,
     Object = 16,
+    Integral = 32,
     Always = Color | Depth,
-    All = Always | Normal | Albedo | Object
+    All = Always | Normal | Albedo | Object | Integral
   };
 
   std::uint32_t Value = Always;
@@ -51,6 +52,9 @@ struct Channels
   std::vector<std::uint8_t> Albedo;
   /// Index in Scene::Objects of the first surface in the middle of the pixel, which sample 0 meets; -1 for none.
   std::vector<std::int32_t> Object;
+  /// Integrals of values along the ray through the middle of the pixel, over its length in world space: the sum over
+  /// all media that have any (IntegralOf), from the near plane to the far plane, whatever surfaces are in between.
+  std::vector<float> Integral;
 
   /// Calls `visit(values, count, empty, others...)` for each channel that `first` has: so many values a pixel, what one
   /// of them is where nothing was hit, and the same channel of `others`, which have the same ones.
@@ -70,6 +74,7 @@ struct Channels
     visitIf(ChannelSet::Normal, first.Normal, std::size_t(3), 0.0f, others.Normal...);
     visitIf(ChannelSet::Albedo, first.Albedo, std::size_t(4), std::uint8_t(0), others.Albedo...);
     visitIf(ChannelSet::Object, first.Object, std::size_t(1), std::int32_t(-1), others.Object...);
+    visitIf(ChannelSet::Integral, first.Integral, std::size_t(1), 0.0f, others.Integral...);
   }
 
   /// Makes `pixels` empty pixels with these channels.

@@ -31,6 +31,7 @@ struct PixelSample
   glm::vec4 Albedo{ 0.0f };
   glm::vec3 Normal{ 0.0f };
   std::int32_t Object = -1;
+  float Integral = 0.0f; ///< of sample 0
 
   /// The same surface by surface, front to back: its depth, and what it contributes to the color.
   /// Where there are more surfaces than layers, a layer stands for several: see AddLayer.

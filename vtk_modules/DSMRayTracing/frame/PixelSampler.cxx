@@ -84,12 +84,14 @@ PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, cons
   : Finders(tracers.GetBeamFinders())
   , Surfaces(GetAll(tracers.Objects))
   , Media(tracers)
+  , Integrals(tracers)
   , Lighting(tracers, scene)
   , LitMedia(tracers, scene)
   , World(scene)
   , Rays(rays)
   , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
   , HasMoreChannels(channels.HasMore())
+  , HasIntegral(channels.Has(ChannelSet::Integral))
 {
   const MediumLook* const look = this->Media.GetMarchedLook();
   const auto shading = look ? this->LitMedia.FindShading(*look) : std::nullopt;
@@ -127,6 +129,12 @@ void PixelSampler::Sample(
       wanted |= GetBit(index);
     }
   }
+  const bool isIntegrated = this->HasIntegral && sample == 0;
+  double integrals[MaxRays];
+  if (isIntegrated)
+  {
+    this->Integrals.Find(rays, wanted, beam, integrals);
+  }
   Paths paths;
   this->Follow(
     beam, rays, wanted, this->World.Transport.MaxBounces,
@@ -152,6 +160,10 @@ void PixelSampler::Sample(
     path.Layers->Color = path.Color;
     path.Layers->Shared = path.Shared;
     path.Layers->LightRays = path.LightRays;
+    if (isIntegrated)
+    {
+      path.Layers->Integral = static_cast<float>(integrals[path.Index]);
+    }
   }
 }
 

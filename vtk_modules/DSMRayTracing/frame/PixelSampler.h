@@ -9,6 +9,7 @@
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/PixelSample.h"
 #include "DSMRayTracing/scene/MediaMarcher.h"
+#include "DSMRayTracing/scene/MediumIntegrals.h"
 #include "DSMRayTracing/scene/SceneBeam.h"
 #include "DSMRayTracing/scene/SceneTracers.h"
 #include "DSMRayTracing/scene/SurfaceFinder.h"
@@ -86,12 +87,14 @@ private:
   std::vector<const BeamFinder*> Finders;
   SurfaceFinder Surfaces;
   MediaMarcher Media;
+  MediumIntegrals Integrals;
   ArrivingLight Lighting;
   MediumLighting LitMedia;
   const Scene& World;
   const PixelRays& Rays;
   bool SharesAmbient;
   bool HasMoreChannels;
+  bool HasIntegral; ///< true if ChannelSet::Integral was asked for
 };
 
 } // namespace rt

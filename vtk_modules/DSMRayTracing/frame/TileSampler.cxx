@@ -52,6 +52,10 @@ void AddMoreChannels(const PixelSample& traced, int sample, Tile& tile)
   {
     tile.Object[pixel] = traced.Object;
   }
+  if (tile.Present.Has(ChannelSet::Integral) && sample == 0)
+  {
+    tile.Integral[pixel] = traced.Integral;
+  }
 }
 
 } // namespace

@@ -54,6 +54,13 @@ public:
   /// Adds that to the pieces of the rays that are `wanted`, from MediumLight::FirstPiece on. Where density is known
   /// only then, drops the pieces behind the place where a ray is dark.
   virtual void Describe(const Ray* /*rays*/, RayMask /*wanted*/, MediumLight&) const {}
+
+  /// Adds the integrals of values along those of the rays that are `wanted`, in [ray.Min, ray.Max], over their length
+  /// in world space, to `integrals[ray]`. By default there are none. `beam`: as for March.
+  virtual void Integrate(
+    const Ray* /*rays*/, RayMask /*wanted*/, ObjectBeam* /*beam*/, double* /*integrals*/) const
+  {
+  }
 };
 
 } // namespace rt

@@ -4,6 +4,7 @@
 
 #include "DSMRayTracing/field/Fields.h"
 #include "DSMRayTracing/medium/ExtremumOf.h"
+#include "DSMRayTracing/medium/IntegralOf.h"
 #include "DSMRayTracing/medium/MediumOf.h"
 #include "DSMRayTracing/medium/SumOf.h"
 #include "DSMRayTracing/scene/OtherKind.h"
@@ -16,9 +17,11 @@ namespace rt
 using LatticeMedium = MediumOf<LatticeField>;
 using LatticeExtremum = ExtremumOf<LatticeField>;
 using LatticeSum = SumOf<LatticeField>;
+using LatticeIntegral = IntegralOf<LatticeField>;
 using LevelMedium = MediumOf<LevelField>;
 using LevelExtremum = ExtremumOf<LevelField>;
 using LevelSum = SumOf<LevelField>;
+using LevelIntegral = IntegralOf<LevelField>;
 
 template <class Fields>
 struct MediumKinds;
@@ -26,7 +29,7 @@ template <class... FieldTypes>
 struct MediumKinds<std::variant<FieldTypes...>>
 {
   using Any = std::variant<MediumOf<FieldTypes>..., ExtremumOf<FieldTypes>..., SumOf<FieldTypes>...,
-    OtherMedium>;
+    IntegralOf<FieldTypes>..., OtherMedium>;
 };
 
 /// A medium of any kind, for each kind of field. A kind has
@@ -39,6 +42,12 @@ using SceneMedium = MediumKinds<AnyField>::Any;
 inline bool HasLayers(const SceneMedium& medium)
 {
   return std::visit([](const auto& kind) { return kind.IsLayered(); }, medium);
+}
+
+/// Returns whether a medium has integrals of values, for ChannelSet::Integral.
+inline bool HasIntegrals(const SceneMedium& medium)
+{
+  return std::visit([](const auto& kind) { return HasIntegrals(kind); }, medium);
 }
 
 } // namespace rt

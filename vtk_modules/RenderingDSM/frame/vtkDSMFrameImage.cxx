@@ -87,4 +87,12 @@ void vtkDSMFrameImage::Fill(vtkImageData* image, int width, int height, const rt
   image->SetDimensions(width, height, 1);
   image->GetPointData()->SetScalars(colors);
   image->GetPointData()->AddArray(depths);
+  if (picture.Present.Has(rt::ChannelSet::Integral))
+  {
+    vtkNew<vtkFloatArray> integrals;
+    integrals->SetName("integral");
+    integrals->SetNumberOfTuples(colors->GetNumberOfTuples());
+    std::copy_n(picture.Integral.data(), integrals->GetNumberOfTuples(), integrals->GetPointer(0));
+    image->GetPointData()->AddArray(integrals);
+  }
 }

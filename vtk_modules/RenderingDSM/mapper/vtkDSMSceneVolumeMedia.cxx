@@ -141,6 +141,10 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
       {
         sum->WorldToSpace = worldToData;
       }
+      if (auto* const integral = std::get_if<rt::IntegralOf<FieldType>>(&medium))
+      {
+        integral->Longest = glm::length(glm::dmat3(dataToWorld) * (upper - lower));
+      }
       if (auto* const lit = std::get_if<rt::MediumOf<FieldType>>(&medium))
       {
         lit->WorldToSpace = worldToData;

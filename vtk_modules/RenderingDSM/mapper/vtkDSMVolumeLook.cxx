@@ -147,6 +147,16 @@ vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& 
           },
           any);
       };
+    case vtkDSMVolumeMapper::INTEGRAL_BLEND:
+      return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last)](
+               const rt::AnyField& any, const rt::ClipRegion& clipping)
+      {
+        return std::visit(
+          [&](const auto& field) -> rt::SceneMedium {
+            return rt::IntegralOf<std::decay_t<decltype(field)>>{ field, colors, clipping };
+          },
+          any);
+      };
     case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
     case vtkVolumeMapper::ADDITIVE_BLEND:
     {

@@ -79,6 +79,15 @@ public:
   bool HasOldData() const;
   ///@}
 
+  /**
+   * A blend mode beside those of vtkVolumeMapper: the integral of the values along each ray, over its length in world
+   * space. vtkDSMScene::TraceImage gives the numbers. The colors that the color function has over the array's range
+   * are spread over the integrals that there can be: from 0, or the smallest value if it is negative, to the largest
+   * value, both times the diagonal of the bounds. The opacity function has no effect.
+   */
+  static constexpr int INTEGRAL_BLEND = 100;
+  void SetBlendModeToIntegral() { this->SetBlendMode(INTEGRAL_BLEND); }
+
   ///@{
   /**
    * The array whose isosurfaces are drawn. Empty (the default) means the active scalars of the points or, without

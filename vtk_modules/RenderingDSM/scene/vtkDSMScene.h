@@ -116,10 +116,12 @@ public:
    * of the renderer that have this module's mappers, from its active camera (clipping range included), with its
    * lights, or a headlight if it has none, and with all samples. `image` gets `width` x `height` points, row 0 the
    * lowest, with the scalars "color", 4 bytes, and the array "depth", a float as in a window's depth buffer, 1
-   * where nothing is. Colors lie over the renderer's background, or, if `transparent`, have the opacity of what is
-   * shown, and are not multiplied by it. Props with other mappers are left out. The pixels are those that a window
-   * of this size shows; how the frame reaches windows makes no difference. A renderer without a window needs no
-   * more than VTK's libraries.
+   * where nothing is. If a volume has the blend mode vtkDSMVolumeMapper::INTEGRAL_BLEND, there also is the array
+   * "integral", a float: the integral along the ray through the middle of the pixel, between the clipping planes
+   * of the camera, whatever surfaces are there; of several such volumes the sum. Colors lie over the renderer's
+   * background, or, if `transparent`, have the opacity of what is shown, and are not multiplied by it. Props with
+   * other mappers are left out. The pixels are those that a window of this size shows; how the frame reaches
+   * windows makes no difference. A renderer without a window needs no more than VTK's libraries.
    *
    * Collective: every rank calls it with the same size, also one that has no data. Each gets the whole picture,
    * unless its `image` is null. False, with an error as for a frame, if that fails; the same on every rank.

@@ -252,6 +252,12 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
     this->Group->GetOptions()->GetScheduler() == vtkDSMMemoryOptions::CentralQueue
     ? rt::TileScheduling::CentralQueue
     : rt::TileScheduling::WorkStealing;
+  if (this->Image &&
+    std::any_of(scene.Media.begin(), scene.Media.end(),
+      [](const rt::SceneMedium& medium) { return rt::HasIntegrals(medium); }))
+  {
+    request.Channels.Value |= rt::ChannelSet::Integral;
+  }
   request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
   request.PixelSize = this->GetReduction(request);
   request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;

@@ -3,11 +3,11 @@
 #define rt_GridTraversal_h
 
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMRayTracing/field/grid/BrickCells.h"
 #include "DSMRayTracing/field/grid/CornerTest.h"
 #include "DSMRayTracing/field/grid/GridRay.h"
 #include "DSMRayTracing/field/grid/GridWalk.h"
 #include "DSMRayTracing/field/grid/IsovalueLevel.h"
-#include "DSMRayTracing/field/grid/MacrocellWalk.h"
 #include "DSMRayTracing/field/grid/TrilinearIsosurface.h"
 #include "DSMRayTracing/ray/CellHit.h"
 
@@ -22,10 +22,7 @@ class GridTraversal
 public:
   /// `origin`: the brick's first cell.
   GridTraversal(const Ray& ray, const bricks::VoxelBrick<T>& brick, const Lanes& origin)
-    : Line(ray)
-    , Brick(brick)
-    , Origin(origin)
-    , CellStrides(brick.GetRow(), brick.GetSlice())
+    : Cells(ray, brick, origin)
   {
   }
 
@@ -79,56 +76,16 @@ private:
   bool Walk(const IsovalueLevel<T>& level, double enter, double leave, double limit,
     const Intersect& intersect) const
   {
-    return VisitMacrocells(
-      this->Line, this->Brick, this->Origin, enter, leave, limit,
+    const std::ptrdiff_t row = this->Cells.GetBrick().GetRow();
+    const std::ptrdiff_t slice = this->Cells.GetBrick().GetSlice();
+    return this->Cells.VisitCells(
+      enter, leave, limit,
       [&](const bricks::MacrocellRange<T>& range) { return level.Separates(range.Min, range.Max); },
-      [&](const GridWalk& walk, double in, double out)
-      { return this->WalkCells(level, walk, in, out, intersect); });
-  }
-
-  /// The same in the macrocell of `macrocells`, which the ray crosses from enter to leave.
-  template <class Intersect>
-  bool WalkCells(const IsovalueLevel<T>& level, const GridWalk& macrocells, double enter,
-    double leave, const Intersect& intersect) const
-  {
-    const Lanes first = macrocells.GetFirst(this->Line, bricks::MacrocellEdge);
-    const Lanes size(
-      this->Brick.GetCells(0), this->Brick.GetCells(1), this->Brick.GetCells(2), 1.0);
-    const Lanes place = first - this->Origin;
-    const Lanes counts = Min(size - place, Lanes(bricks::MacrocellEdge));
-    GridWalk walk;
-    const T* corner = this->Brick.GetSamples() +
-      static_cast<std::int64_t>((place * this->CellStrides.Real).GetSum()) +
-      walk.Start(this->Line, enter, NodeGrid{ first, 1.0, 1.0, counts, this->CellStrides });
-    const std::ptrdiff_t row = this->Brick.GetRow();
-    const std::ptrdiff_t slice = this->Brick.GetSlice();
-    double t = enter;
-    for (;;)
-    {
-      const double exit = std::min(walk.GetExit(), leave);
-      if (CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
-        intersect(walk, corner, t, exit))
+      [&](const GridWalk& walk, const T* corner, double in, double out)
       {
-        return true;
-      }
-      if (exit >= leave)
-      {
-        return false;
-      }
-      corner += walk.Advance(this->Line, exit);
-      t = exit;
-    }
-  }
-
-  /// Returns the position of the ray in a cell at t, given its point there: exactly 0 or 1 where
-  /// the ray meets a plane of the cell.
-  Lanes GetLocal(const Lanes& cell, double t) const
-  {
-    const Lanes zero(0.0);
-    const Lanes one(1.0);
-    const Lanes inside = Clamp(this->Line.GetWithin(cell, t), zero, one);
-    const Lanes lower = Select(this->Line.GetPlaneT(cell) == Lanes(t), zero, inside);
-    return Select(this->Line.GetPlaneT(cell + one) == Lanes(t), one, lower);
+        return CornerTest<T>::IsSeparated(corner, row, slice, level.GetFirst()) &&
+          intersect(walk, corner, in, out);
+      });
   }
 
   /// Returns whether the cell holds data. If it does, `corners` are its corner values minus the
@@ -136,17 +93,12 @@ private:
   bool GetCorners(
     const IsovalueLevel<T>& level, const T* corner, const Lanes& cell, double corners[8]) const
   {
-    if (this->Brick.GetHeader().MaskOffset != 0)
+    if (!this->Cells.IsCovered(cell))
     {
-      const Lanes local = cell - this->Origin;
-      if (!this->Brick.IsCovered(
-            static_cast<int>(local[0]), static_cast<int>(local[1]), static_cast<int>(local[2])))
-      {
-        return false;
-      }
+      return false;
     }
-    const std::ptrdiff_t row = this->Brick.GetRow();
-    const std::ptrdiff_t slice = this->Brick.GetSlice();
+    const std::ptrdiff_t row = this->Cells.GetBrick().GetRow();
+    const std::ptrdiff_t slice = this->Cells.GetBrick().GetSlice();
     double check = 0.0;
     for (int pair = 0; pair < 4; ++pair)
     {
@@ -164,9 +116,9 @@ private:
   bool EnterCell(const IsovalueLevel<T>& level, const GridWalk& cells, const T* corner,
     double enter, double leave, double corners[8], Lanes& start, Lanes& end) const
   {
-    const Lanes cell = cells.GetFirst(this->Line, 1.0);
-    start = this->GetLocal(cell, enter);
-    end = this->GetLocal(cell, leave);
+    const Lanes cell = this->Cells.GetCell(cells);
+    start = this->Cells.GetLocal(cell, enter);
+    end = this->Cells.GetLocal(cell, leave);
     return this->GetCorners(level, corner, cell, corners);
   }
 
@@ -183,21 +135,18 @@ private:
     {
       return false;
     }
-    const Lanes cell = cells.GetFirst(this->Line, 1.0);
+    const Lanes cell = this->Cells.GetCell(cells);
     hit.T = std::min(enter + s * (leave - enter), leave);
     hit.FromInside = EvaluateTrilinear(corners, start) >= 0.0;
     hit.Local = Clamp(start + Lanes(s) * (end - start), Lanes(0.0), Lanes(1.0));
     for (int axis = 0; axis < 3; ++axis)
     {
-      hit.Cell[axis] = static_cast<int>(cell[axis] - this->Origin[axis]);
+      hit.Cell[axis] = static_cast<int>(cell[axis] - this->Cells.GetOrigin()[axis]);
     }
     return true;
   }
 
-  const Ray& Line;
-  const bricks::VoxelBrick<T>& Brick;
-  Lanes Origin;
-  NodeStrides CellStrides;
+  BrickCells<T, Ray> Cells;
 };
 
 } // namespace rt
