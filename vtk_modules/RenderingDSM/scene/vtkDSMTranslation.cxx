@@ -181,7 +181,12 @@ rt::MediumLook vtkDSMTranslation::ToMediumLook(
     opacity.Factors.resize(count);
     property->GetGradientOpacity(component)->GetTable(
       0.0, opacity.Last, count, opacity.Factors.data());
-    look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
+    // VTK makes a function of ones for whoever asks for it. Gradients would have to be found for nothing.
+    if (std::any_of(opacity.Factors.begin(), opacity.Factors.end(),
+          [](double factor) { return factor != 1.0; }))
+    {
+      look.Gradients = std::make_shared<const rt::GradientOpacity>(std::move(opacity));
+    }
   }
   return look;
 }
