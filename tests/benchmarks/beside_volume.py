@@ -156,10 +156,10 @@ def measure(volume, image, functions, options):
     views = {name: View(mapper, image, options.size) for name, mapper in mappers.items()}
     for function, nodes in functions.items():
         for shade in (False, True):
-            look = make_property(nodes, values, cell, shade)
             seconds = {}
             for mapper, view in views.items():
-                view.volume.SetProperty(look)
+                # Each has its own: vtkFixedPointVolumeRayCastMapper adds a gradient opacity to that of its volume.
+                view.volume.SetProperty(make_property(nodes, values, cell, shade))
                 view.render(0.0)  # makes bricks and textures
                 seconds[mapper] = []
             for frame in range(options.frames):
