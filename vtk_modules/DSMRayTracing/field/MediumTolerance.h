@@ -17,6 +17,8 @@ struct MediumTolerance
   static constexpr double Joint = 1.0 / 32.0;
   /// Error of the light of a way that is shaded at one place.
   static constexpr double Glare = 1.0 / 256.0;
+  /// The same in a cell, which is cut into halves where it is larger, as if it were that of the macrocell.
+  static constexpr double CellGlare = 1.0 / 16.0;
   /// Error of the color of a piece: the front of a piece hides part of its back.
   static constexpr double Color = 1.0 / 1024.0;
   /// Pieces that are described for a unit of optical depth.

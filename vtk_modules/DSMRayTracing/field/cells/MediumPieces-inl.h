@@ -196,7 +196,7 @@ public:
     }
     if (this->JoinedLength > 0.0f)
     {
-      count = hn::Max(count, this->GetDescribedCount(ways, behavior));
+      count = hn::Max(count, this->GetDescribedCount(ways, least, most, there));
     }
     const Mask divided = hn::And(there, hn::Gt(count, one));
     if (hn::AllFalse(tag, divided))
@@ -270,11 +270,24 @@ private:
   }
 
   /// Pieces are described one by one, and light changes along the way.
-  Vector GetDescribedCount(const Ways& ways, const Behavior&) const
+  HWY_NOINLINE Vector GetDescribedCount(
+    const Ways& ways, Vector least, Vector most, Mask there) const
   {
     const F tag;
-    const Vector parts = hn::Mul(ways.Length, hn::Set(tag, 1.0f / this->JoinedLength));
-    return hn::Min(hn::Ceil(parts), hn::Set(tag, MostPieces));
+    HWY_ALIGN float numbers[3][Width];
+    hn::Store(least, tag, numbers[0]);
+    hn::Store(most, tag, numbers[1]);
+    hn::Store(hn::Set(tag, 1.0f / this->JoinedLength), tag, numbers[2]);
+    for (std::uint32_t lanes = GetMaskBits(tag, there); lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctz(lanes);
+      const double extinction =
+        this->Function.FindBehavior(numbers[0][lane], numbers[1][lane]).Extinction;
+      numbers[2][lane] = std::max(
+        numbers[2][lane], static_cast<float>(extinction * MediumTolerance::DescribedPieces));
+    }
+    return hn::Min(
+      hn::Ceil(hn::Mul(ways.Length, hn::Load(tag, numbers[2]))), hn::Set(tag, MostPieces));
   }
 
   /// Adds ways that are cut into `count` pieces.

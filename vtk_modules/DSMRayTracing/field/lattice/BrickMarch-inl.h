@@ -154,6 +154,10 @@ private:
         if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
         {
           Choose(joined, this->GetCells(rays), nodes);
+          if (this->Brick.Shading)
+          {
+            this->Halve(rays, hn::AndNot(joined, open), node, seenLength, nodes);
+          }
         }
       }
       const Mask visible = hn::AndNot(hn::Lt(error, hn::Zero(tag)), open);
@@ -290,6 +294,19 @@ private:
       nodes.Exit = hn::Min(nodes.Exit, nodes.Leave[axis]);
     }
     nodes.Exit = hn::Max(nodes.Exit, rays.T);
+  }
+  /// Lets those of `cells` that are dense, and where normals turn, end their steps in the middle of their cells.
+  HWY_INLINE void Halve(
+    const Rays& rays, Mask cells, Numbers node, Vector seenLength, Nodes& nodes) const
+  {
+    const F tag;
+    const Vector way = hn::Sub(nodes.Exit, rays.T);
+    const Vector glare = hn::Mul(
+      hn::GatherIndex(tag, this->Brick.Glare, node), hn::Mul(way, seenLength));
+    const Mask bright =
+      hn::Gt(glare, hn::Set(tag, static_cast<float>(MediumTolerance::CellGlare)));
+    nodes.Exit = hn::IfThenElse(hn::And(cells, bright),
+      hn::Add(rays.T, hn::Mul(hn::Set(tag, 0.5f), way)), nodes.Exit);
   }
   /// Keeps the nodes of `kept`, and takes the others from `other`.
   static HWY_INLINE void Choose(Mask kept, const Nodes& other, Nodes& nodes)

@@ -239,8 +239,8 @@ private:
     return all;
   }
 
-  /// How far values along a ray through a rectilinear macrocell may be from a quadratic: trilinear values are by as
-  /// much as from any smooth curve, an eighth of how much they bend in a cell.
+  /// How far values along a ray through a rectilinear macrocell may be from a quadratic: trilinear values are an eighth
+  /// of how much they bend in a cell from a smooth curve. That curve itself is taken for up to three times as far.
   double FindStretchedBend(const std::array<int, 3>& macrocell) const
   {
     int first[3];
@@ -261,7 +261,7 @@ private:
         this->Grid->GetInverseWidths(axis) + this->First[axis] +
           static_cast<std::size_t>(first[axis]));
     }
-    return 0.125 * this->Kernel.FindRoughness(samples);
+    return 0.5 * this->Kernel.FindRoughness(samples);
   }
 
   const bricks::VoxelBrick<T>& Brick;
