@@ -122,6 +122,7 @@ TEST_F(VolumeMapper, MediaOfCellsAreThoseOfTheirMeansAtPoints)
   gray->AddPoint(0.0, 1.0);
   gray->AddPoint(0.6, 0.5);
   this->Volume->GetProperty()->SetColor(gray);
+  this->Volume->GetProperty()->SetInterpolationTypeToLinear();
   this->Renderer->AddVolume(this->Volume);
   vtkNew<vtkDSMVolumeMapper> mapper;
   this->Volume->SetMapper(mapper);

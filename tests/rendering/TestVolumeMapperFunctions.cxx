@@ -281,8 +281,10 @@ protected:
     this->SetColor(2, 5.0, { 0.0, 1.0, 0.0, 1.0 });
     this->SetColor(3, 9.0, { 0.0, 0.0, 1.0, 1.0 });
     this->Opacity->AddPoint(0.0, 0.0);
-    this->Opacity->AddPoint(0.9, 0.0);
-    this->Opacity->AddPoint(1.0, 0.1);
+    // Level at the label: VTK's table of opacities is not exact where they rise.
+    this->Opacity->AddPoint(0.4, 0.0);
+    this->Opacity->AddPoint(0.6, 0.1);
+    this->Opacity->AddPoint(1.4, 0.1);
     this->Opacity->AddPoint(9.0, 0.3);
     this->Property->SetColor(this->Colors);
     this->Property->SetScalarOpacity(this->Opacity);
