@@ -144,6 +144,11 @@ public:
     this->Moment = hn::Zero(F());
     this->Before = this->Transmittance;
   }
+  /// Returns whether there is anything.
+  bool HasShaded() const
+  {
+    return !hn::AllTrue(F(), hn::Ge(this->Transmittance, this->Before));
+  }
   /// Where, on the mean, that is what is seen of it; `middle` where there is nothing.
   Vector FindCenter(Vector middle) const
   {

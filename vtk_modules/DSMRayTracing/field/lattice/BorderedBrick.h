@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace rt
 {
@@ -21,14 +23,32 @@ template <class T>
 class BorderedBrick
 {
 public:
-  /// Fills MediumBrickMemory::Samples with places in the function. Acquires bricks, so no pin may be held.
+  /// Returns places in the function, which are kept in `memory` for a while, since neighboring packets of rays go
+  /// through the same bricks. Acquires bricks, so no pin may be held.
+  template <class Store>
+  static const float* Get(Store& store, typename Store::Worker& worker,
+    const bricks::VoxelField& field, dsm::BlockId id, const TransferFunction& function,
+    MediumBrickMemory& memory)
+  {
+    memory.Bordereds.resize(MediumBrickMemory::BorderedBricks);
+    auto& own = memory.Bordereds[id % MediumBrickMemory::BorderedBricks];
+    if (own.Id != static_cast<std::int64_t>(id))
+    {
+      own.Id = -1; // a store may throw
+      Fill(store, worker, field, id, function, own.Samples);
+      own.Id = static_cast<std::int64_t>(id);
+    }
+    return own.Samples.data();
+  }
+
+private:
   template <class Store>
   static void Fill(Store& store, typename Store::Worker& worker, const bricks::VoxelField& field,
-    dsm::BlockId id, const TransferFunction& function, MediumBrickMemory& memory)
+    dsm::BlockId id, const TransferFunction& function, std::vector<float>& samples)
   {
     const bricks::Index3 home = field.Lattice.GetBrick(id);
     const bricks::Index3 cells = field.Lattice.GetCellsOfBrick(id).GetSize();
-    BorderedBrick all(cells, function, memory.Samples);
+    BorderedBrick all(cells, function, samples);
     {
       const typename Store::Pin pin = store.Acquire(worker, *field.Segment, id);
       all.CopyInner(bricks::VoxelBrick<T>(pin.GetData()));
@@ -56,7 +76,6 @@ public:
     }
   }
 
-private:
   BorderedBrick(
     const bricks::Index3& cells, const TransferFunction& function, std::vector<float>& samples)
     : Origin(function.GetOrigin())

@@ -161,15 +161,16 @@ private:
         }
       }
       const Mask visible = hn::AndNot(hn::Lt(error, hn::Zero(tag)), open);
-      if (hn::AllFalse(tag, visible))
+      const Mask hidden = hn::AndNot(visible, open);
+      if (!hn::AllFalse(tag, hidden))
       {
-        hasValue = visible;
+        // The others wait until as many as possible have something to see.
+        hasValue = hn::And(hasValue, visible);
+        open = hn::Or(visible, this->GoOn(rays, nodes, hidden));
+        continue;
       }
-      else
-      {
-        this->Step(rays, nodes, node, joined, visible, value, hasValue);
-      }
-      open = this->GoOn(rays, nodes, hn::AndNot(this->Ways.FindDark(), open));
+      this->Step(rays, nodes, node, joined, visible, value, hasValue);
+      open = hn::AndNot(this->Ways.FindDark(), this->GoOn(rays, nodes, open));
     }
     const std::uint32_t dark = GetMaskBits(tag, this->Ways.FindDark()) & some;
     this->Ways.PutRays(some);
@@ -498,14 +499,20 @@ private:
       Vector corners[8];
       this->LoadSamples<4>(middle.Cell, corners);
       ways.Middle = this->Interpolate(corners, middle.Within);
+      // In a cell, samples are the same at all places.
+      const Mask cells = hn::AndNot(joined, visible);
+      const bool areCells = hn::AllFalse(tag, hn::And(joined, visible));
+      const auto findValues = [&](Vector t)
+      {
+        const Places places = this->FindPlaces(rays, nodes, t);
+        return areCells ? this->Interpolate(corners, places.Within) : this->FindValues(places);
+      };
       ways.First = value;
       if (!hn::AllFalse(tag, hn::AndNot(hasValue, visible)))
       {
-        ways.First = hn::IfThenElse(
-          hasValue, value, this->FindValues(this->FindPlaces(rays, nodes, rays.T)));
+        ways.First = hn::IfThenElse(hasValue, value, findValues(rays.T));
       }
-      ways.Last = this->FindValues(this->FindPlaces(rays, nodes, nodes.Exit));
-      const Mask cells = hn::AndNot(joined, visible);
+      ways.Last = findValues(nodes.Exit);
       if (!hn::AllFalse(tag, cells))
       {
         this->SetCubics(rays, nodes, cells, corners, ways);
@@ -528,8 +535,11 @@ private:
     {
       this->Ways.BeginShaded();
       this->Ways.Add(ways, there, { change, deep });
-      const Vector center = this->Ways.FindCenter(hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
-      this->Shade(rays, this->FindPlaces(rays, nodes, center));
+      if (this->Ways.HasShaded())
+      {
+        const Vector center = this->Ways.FindCenter(hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+        this->Shade(rays, this->FindPlaces(rays, nodes, center));
+      }
     }
     else
     {
@@ -725,13 +735,14 @@ private:
     return GetBitMask(tag, covered);
   }
 
-  /// Takes rays to the nodes behind theirs. Returns those of `open` that are still in the brick.
-  HWY_INLINE Mask GoOn(Rays& rays, const Nodes& nodes, Mask open) const
+  /// Takes `some` rays to the nodes behind theirs. Returns those of them that are still in the brick.
+  HWY_INLINE Mask GoOn(Rays& rays, const Nodes& nodes, Mask some) const
   {
     const F tag;
     const Vector one = hn::Set(tag, 1.0f);
-    rays.T = nodes.Exit;
-    open = hn::And(open, hn::Lt(rays.T, one));
+    rays.T = hn::IfThenElse(some, nodes.Exit, rays.T);
+    Mask open = hn::And(some, hn::Lt(rays.T, one));
+    Vector cells[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       const Vector point = hn::Add(rays.Start[axis], hn::Mul(rays.T, rays.Way[axis]));
@@ -739,15 +750,16 @@ private:
         axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), PartSteps);
       const Vector next =
         this->Packet.Forward[axis] ? nodes.High[axis] : hn::Sub(nodes.Low[axis], one);
-      rays.Cell[axis] =
-        hn::IfThenElse(hn::Le(nodes.Leave[axis], rays.T), next, inside);
+      cells[axis] = hn::IfThenElse(hn::Le(nodes.Leave[axis], rays.T), next, inside);
       open = hn::And(open,
-        hn::And(hn::Ge(rays.Cell[axis], hn::Zero(tag)),
-          hn::Lt(rays.Cell[axis], hn::Set(tag, this->Count[axis]))));
+        hn::And(hn::Ge(cells[axis], hn::Zero(tag)),
+          hn::Lt(cells[axis], hn::Set(tag, this->Count[axis]))));
     }
-    for (Vector& cell : rays.Cell)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      cell = hn::IfThenElseZero(open, cell); // those that are not open need cells that exist, too
+      // Those that have left the brick need cells that exist, too.
+      rays.Cell[axis] =
+        hn::IfThenElse(some, hn::IfThenElseZero(open, cells[axis]), rays.Cell[axis]);
     }
     return open;
   }

@@ -26,14 +26,22 @@ namespace rt
 struct MediumBrickMemory
 {
   std::vector<float> Samples;
+  /// The bricks with borders that rays went through last, by their ids.
+  static constexpr std::size_t BorderedBricks = 64;
+  struct Bordered
+  {
+    std::int64_t Id = -1;
+    std::vector<float> Samples;
+  };
+  std::vector<Bordered> Bordereds;
   std::vector<float> Error;
   std::vector<float> Change;
   std::vector<float> Deep;
   std::vector<float> Glare;
   std::vector<float> Planes[3];
   std::vector<float> Inverse[3];
-  /// True: Samples have been filled with the places of the samples of the brick, with one more on each side.
-  bool HasBorder = false;
+  /// Places of the samples of the brick, with one more on each side; null: none.
+  const float* WithBorder = nullptr;
   MediumShading Shading;
 };
 
@@ -166,11 +174,11 @@ private:
   {
     const double origin = this->Function.GetOrigin();
     const double scale = this->Function.GetScale();
-    if (this->Memory.HasBorder)
+    if (this->Memory.WithBorder)
     {
       this->Row += 2;
       this->Slice = this->Row * (this->Cells[1] + 3);
-      this->SetPlaces(this->Memory.Samples.data() + 1 + this->Row + this->Slice);
+      this->SetPlaces(this->Memory.WithBorder + 1 + this->Row + this->Slice);
       return;
     }
     this->Samples = this->Brick.GetSamples();

@@ -53,12 +53,13 @@ protected:
     }
     bricks.Reached = std::max(bricks.Reached, place + 1);
     MediumBrickMemory& memory = *this->Memory;
-    memory.HasBorder = light.Shading != nullptr;
+    memory.WithBorder = nullptr;
     if constexpr (std::is_same_v<typename FieldType::Values, bricks::VoxelField>)
     {
-      if (memory.HasBorder)
+      if (light.Shading)
       {
-        BorderedBrick<T>::Fill(this->Blocks, this->Self, *field.Voxels, brick.Id, function, memory);
+        memory.WithBorder = BorderedBrick<T>::Get(
+          this->Blocks, this->Self, *field.Voxels, brick.Id, function, memory);
       }
     }
     const typename Store::Pin pin =
