@@ -45,8 +45,8 @@ HWY_INLINE Vector GetPower(Vector base, float power)
   {
     sum = hn::Add(hn::Mul(sum, square), hn::Set(tag, factors[order]));
   }
-  const Vector logarithm = hn::Add(
-    hn::Mul(hn::ConvertTo(tag, whole), hn::Set(tag, 0.693147181f)), hn::Mul(z, sum));
+  const Vector logarithm =
+    hn::Add(hn::Mul(hn::ConvertTo(tag, whole), hn::Set(tag, 0.693147181f)), hn::Mul(z, sum));
   const Vector depth = hn::Mul(logarithm, hn::Set(tag, -power));
   return GetTransmittance(hn::Max(depth, hn::Zero(tag)));
 }

@@ -23,6 +23,10 @@ struct MediumTolerance
   static constexpr double Color = 1.0 / 1024.0;
   /// Pieces that are described for a unit of optical depth.
   static constexpr double DescribedPieces = 4.0;
+  /// How much less errors are where all that counts is to be exact, and how much larger they may be of the light that
+  /// gets to a place.
+  static constexpr double Exact = 64.0;
+  static constexpr double Shadow = 8.0;
   /// In bins of the function: on a shorter way, it is nearly constant, and differences would be rounding.
   static constexpr double ShortWay = 1e-7;
 };

@@ -59,8 +59,8 @@ std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look)
     {
       return std::nullopt;
     }
-    shading.Lamps.push_back({ glm::vec3(lamp.Direction), surface.Diffuse * lamp.Color,
-      surface.Specular * lamp.Color });
+    shading.Lamps.push_back(
+      { glm::vec3(lamp.Direction), surface.Diffuse * lamp.Color, surface.Specular * lamp.Color });
     (lamp.IsLoneHeadlight ? shading.Ambient : shading.AmbientOpacity) +=
       surface.Ambient * (lamp.IsLoneHeadlight ? glm::vec3(1.0f) : lamp.AmbientColor);
   }

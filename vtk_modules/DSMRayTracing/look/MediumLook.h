@@ -45,6 +45,8 @@ struct MediumLook
   /// True: the value of a place is that of the nearest sample, so that samples are boxes. False: values are
   /// interpolated.
   bool Nearest = false;
+  /// True: errors are a small part of what a pixel of 8 bits can show. False: they are too small to be seen.
+  bool Exact = false;
 
   bool IsLit() const { return this->Shade || this->Scattering > 0.0; }
 };

@@ -154,17 +154,17 @@ void TransferFunction::AddPart(
   const glm::dvec4 one = ToEmission(begin.Look);
   const glm::dvec4 other = ToEmission(end.Look);
   const double beforeWidth = before.End - before.Begin;
-  const Lanes integral = before.Integral +
-    (before.Look + Lanes(0.5 * beforeWidth) * before.Growth) * Lanes(beforeWidth);
+  const Lanes integral =
+    before.Integral + (before.Look + Lanes(0.5 * beforeWidth) * before.Growth) * Lanes(beforeWidth);
   const double change = GetLargest(glm::abs(GetSeen(other, cellLength) - GetSeen(one, cellLength)));
   const glm::dvec4 beforeEnd = ToVector(before.Look + Lanes(beforeWidth) * before.Growth);
   const double jump =
     GetLargest(glm::abs(GetSeen(one, cellLength) - GetSeen(beforeEnd, cellLength)));
   this->Brightest = std::max({ this->Brightest, GetLargest(glm::dvec4(glm::dvec3(one), 0.0)),
     GetLargest(glm::dvec4(glm::dvec3(other), 0.0)) });
-  this->Parts.push_back({ first, last, integral, ToLanes(one), ToLanes((other - one) / width),
-    end.Look.w, jump,
-    { std::max(one.w, other.w), change / width, GetTinge(begin.Look, end.Look) / width } });
+  this->Parts.push_back(
+    { first, last, integral, ToLanes(one), ToLanes((other - one) / width), end.Look.w, jump,
+      { std::max(one.w, other.w), change / width, GetTinge(begin.Look, end.Look) / width } });
 }
 
 void TransferFunction::SetBins()

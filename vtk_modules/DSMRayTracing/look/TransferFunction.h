@@ -91,8 +91,7 @@ public:
   /// Returns whether any value from `first` to `last` is visible.
   bool IsSeen(double first, double last) const
   {
-    return first <= last &&
-      this->IsPlaceSeen(this->GetPlace(first), this->GetPlace(last));
+    return first <= last && this->IsPlaceSeen(this->GetPlace(first), this->GetPlace(last));
   }
   bool IsSeenAtAll() const { return this->SeenBefore.back() > 0; }
 

@@ -103,6 +103,7 @@ public:
     }
     light.SetSpace(rays, wanted, this->Medium.WorldToSpace);
     light.Nearest = this->Medium.Look.Nearest;
+    light.IsExact = this->Medium.Look.Exact;
     return this->Medium.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       {

@@ -14,8 +14,8 @@ void ObjectDigest::Add(const Material& material)
 
 void ObjectDigest::Add(const MediumLook& look)
 {
-  const auto& [shade, surface, scattering, anisotropy, gradients, nearest] = look;
-  this->AddAll(shade, surface, scattering, anisotropy, gradients, nearest);
+  const auto& [shade, surface, scattering, anisotropy, gradients, nearest, exact] = look;
+  this->AddAll(shade, surface, scattering, anisotropy, gradients, nearest, exact);
 }
 
 void ObjectDigest::Add(const GradientOpacity& gradients)

@@ -198,8 +198,11 @@ public:
   double ErrorFactor = 1.0;
   /// Null: pieces are not shaded while rays march, or later.
   const MediumShading* Shading = nullptr;
-  /// MediumLook::Nearest of the current medium.
+  ///@{
+  /// MediumLook of the current medium.
+  bool IsExact = false;
   bool Nearest = false;
+  ///@}
   /// Rays with less transmittance than this end in the current medium.
   double DarkBelow = Dark;
 

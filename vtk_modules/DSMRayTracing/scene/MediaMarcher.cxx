@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/scene/MediaMarcher.h"
 
+#include "DSMRayTracing/field/MediumTolerance.h"
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -208,6 +210,7 @@ void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transm
     }
     light->Begin(rays, wanted);
     light->KeepsPieces = group != 0 || medium->HasLateExtinction();
+    light->ErrorFactor = 1.0 / MediumTolerance::Shadow;
     for (const auto& other : this->Media)
     {
       if (other == medium || (group != 0 && other->GetGroup() == group))

@@ -44,6 +44,12 @@ dsm_setting(Scattering OWNER volume OWN_METHOD TYPE double DEFAULT 0.75 RANGE 0 
   TEXT "Fraction of the shading that comes from light scattered once by the volume, while the view has shadows or
     ambient occlusion. Dense volumes are nearly black without it. 0 turns it off.")
 
+dsm_setting(ExactIntegration OWNER voxels TYPE bool DEFAULT 0
+  LABEL "Exact Integration" PANEL advanced WHEN volume
+  TEXT "Integrate the volume to a small part of a step of the picture's 8-bit channels, cell by cell. Off: take several
+    cells at once where values bend so little that the picture does not show it."
+  DETAILS "Off, pictures differ from exact ones by less than 0.25 of 255 on average. In the blend mode Composite.")
+
 dsm_setting(SliceOpacityFromMap OWNER slices OWN_METHOD METHOD OpacityFromMap TYPE bool DEFAULT 0
   LABEL "Opacity From Map" PANEL default WHEN slices
   TEXT "Apply the opacity function to the values on the slices. The display's opacity multiplies the result.")

@@ -149,6 +149,7 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
       {
         lit->WorldToSpace = worldToData;
         lit->Look.Scattering = this->Mapper->GetScattering();
+        lit->Look.Exact = this->Mapper->GetExactIntegration();
         lit->ColorValues = this->FindOwnColors<FieldType>(part);
         if (lit->ColorValues)
         {

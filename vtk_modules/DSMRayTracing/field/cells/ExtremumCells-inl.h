@@ -30,7 +30,6 @@ template <class D>
 class ExtremumCells
 {
 public:
-
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));

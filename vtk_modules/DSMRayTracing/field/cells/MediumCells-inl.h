@@ -101,8 +101,7 @@ private:
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
-      const TransferFunction::Behavior found =
-        this->Function.FindBehavior(first[lane], last[lane]);
+      const TransferFunction::Behavior found = this->Function.FindBehavior(first[lane], last[lane]);
       changes[lane] = static_cast<float>(found.Change);
       depths[lane] = static_cast<float>(found.Extinction * found.Tinge);
     }

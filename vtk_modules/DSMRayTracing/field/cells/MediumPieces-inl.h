@@ -70,7 +70,8 @@ public:
     , Table(function.GetTable())
     , Light(light)
     , JoinedLength(static_cast<float>(light.JoinedLength))
-    , ErrorFactor(static_cast<float>(light.ErrorFactor))
+    , ErrorFactor(
+        static_cast<float>(light.ErrorFactor * (light.IsExact ? MediumTolerance::Exact : 1.0)))
   {
     const F tag;
     this->PartBegin = hn::Set(tag, std::numeric_limits<float>::infinity());
@@ -145,10 +146,7 @@ public:
     this->Before = this->Transmittance;
   }
   /// Returns whether there is anything.
-  bool HasShaded() const
-  {
-    return !hn::AllTrue(F(), hn::Ge(this->Transmittance, this->Before));
-  }
+  bool HasShaded() const { return !hn::AllTrue(F(), hn::Ge(this->Transmittance, this->Before)); }
   /// Where, on the mean, that is what is seen of it; `middle` where there is nothing.
   Vector FindCenter(Vector middle) const
   {
@@ -164,8 +162,8 @@ public:
     for (int channel = 0; channel < 3; ++channel)
     {
       this->Sum[channel] = hn::Add(this->Sum[channel],
-        hn::Add(hn::Mul(this->Own[channel], ofEmission[channel]),
-          hn::Mul(opacity, ofOpacity[channel])));
+        hn::Add(
+          hn::Mul(this->Own[channel], ofEmission[channel]), hn::Mul(opacity, ofOpacity[channel])));
     }
   }
 
@@ -228,11 +226,11 @@ private:
   {
     const F tag;
     const Vector twice = hn::Add(ways.Middle, ways.Middle);
-    const Vector bend = hn::Add(
-      hn::Mul(hn::Set(tag, 4.0f), hn::Abs(hn::Sub(hn::Add(ways.First, ways.Last), twice))),
-      hn::Mul(hn::Set(tag, 3.0f), hn::Abs(ways.Cubic)));
-    const Vector range = hn::Add(
-      hn::Abs(hn::Sub(ways.Middle, ways.First)), hn::Abs(hn::Sub(ways.Last, ways.Middle)));
+    const Vector bend =
+      hn::Add(hn::Mul(hn::Set(tag, 4.0f), hn::Abs(hn::Sub(hn::Add(ways.First, ways.Last), twice))),
+        hn::Mul(hn::Set(tag, 3.0f), hn::Abs(ways.Cubic)));
+    const Vector range =
+      hn::Add(hn::Abs(hn::Sub(ways.Middle, ways.First)), hn::Abs(hn::Sub(ways.Last, ways.Middle)));
     const Vector seen = this->GetSeen(ways.Length);
     const Vector curved =
       hn::Mul(hn::Mul(seen, bend), hn::Mul(behavior.Change, hn::Set(tag, BendFactor)));
@@ -306,10 +304,9 @@ private:
     const Vector slope = hn::Sub(hn::Sub(ways.Last, ways.First), bend);
     const auto evaluate = [&](Vector s)
     {
-      const Vector cubic = hn::Mul(
-        ways.Cubic, hn::Mul(hn::Sub(s, hn::Set(tag, 0.5f)), hn::Sub(s, one)));
-      return hn::Add(
-        ways.First, hn::Mul(s, hn::Add(hn::Add(slope, hn::Mul(s, bend)), cubic)));
+      const Vector cubic =
+        hn::Mul(ways.Cubic, hn::Mul(hn::Sub(s, hn::Set(tag, 0.5f)), hn::Sub(s, one)));
+      return hn::Add(ways.First, hn::Mul(s, hn::Add(hn::Add(slope, hn::Mul(s, bend)), cubic)));
     };
     const Vector whole = hn::Sub(ways.End, ways.Begin);
     Ways piece;
@@ -325,8 +322,7 @@ private:
       piece.Begin = piece.End;
       piece.Middle = evaluate(hn::Mul(hn::Set(tag, number - 0.5f), part));
       piece.Last = hn::IfThenElse(isLast, ways.Last, evaluate(end));
-      piece.End =
-        hn::IfThenElse(isLast, ways.End, hn::Add(ways.Begin, hn::Mul(whole, end)));
+      piece.End = hn::IfThenElse(isLast, ways.End, hn::Add(ways.Begin, hn::Mul(whole, end)));
       this->AddPieces(piece, left);
       left = hn::AndNot(hn::Or(isLast, this->FindDark()), left);
     }
@@ -374,14 +370,13 @@ private:
       this->Growth[channel] = hn::GatherIndex(tag, this->Table.Rows.data() + 4 + channel, row);
     }
     // Part 0 has no begin, and does not grow.
-    this->From = hn::IfThenElseZero(
-      hn::RebindMask(tag, hn::Gt(part, hn::Zero(numbers))), this->PartBegin);
+    this->From =
+      hn::IfThenElseZero(hn::RebindMask(tag, hn::Gt(part, hn::Zero(numbers))), this->PartBegin);
   }
   /// The function at a place of the current part.
   Vector Evaluate(int channel, Vector place) const
   {
-    return hn::Add(
-      this->Look[channel], hn::Mul(this->Growth[channel], hn::Sub(place, this->From)));
+    return hn::Add(this->Look[channel], hn::Mul(this->Growth[channel], hn::Sub(place, this->From)));
   }
 
   /// Adds ways, each as one piece.
@@ -456,8 +451,7 @@ private:
     const Vector rest = hn::Mul(hn::Sub(last, node), way);
     for (int channel = 0; channel < 4; ++channel)
     {
-      const Vector both =
-        hn::Add(old[channel], hn::Mul(rest, this->Evaluate(channel, behind)));
+      const Vector both = hn::Add(old[channel], hn::Mul(rest, this->Evaluate(channel, behind)));
       means[channel] = hn::IfThenElse(inside, means[channel], both);
     }
     const std::uint32_t far = GetMaskBits(tag, hn::AndNot(meet, across));
@@ -506,8 +500,8 @@ private:
     const Vector passed = GetTransmittance(hn::IfThenElseZero(there, amount[3]));
     const Vector after = hn::Mul(this->Transmittance, passed);
     const Vector half = hn::Set(tag, 0.5f);
-    const std::uint32_t halved = GetMaskBits(tag,
-      hn::And(there, hn::And(hn::Gt(this->Transmittance, half), hn::Le(after, half))));
+    const std::uint32_t halved = GetMaskBits(
+      tag, hn::And(there, hn::And(hn::Gt(this->Transmittance, half), hn::Le(after, half))));
     if (halved != 0)
     {
       this->Locate(ways, amount[3], halved);
@@ -527,12 +521,10 @@ private:
     if (this->IsShaded)
     {
       const Vector middle = hn::Mul(half, hn::Add(ways.Begin, ways.End));
-      this->Moment =
-        hn::Add(this->Moment, hn::Mul(hn::Sub(this->Transmittance, after), middle));
+      this->Moment = hn::Add(this->Moment, hn::Mul(hn::Sub(this->Transmittance, after), middle));
     }
     this->Transmittance = after;
-    this->Nearest =
-      hn::IfThenElse(there, hn::Min(this->Nearest, ways.Begin), this->Nearest);
+    this->Nearest = hn::IfThenElse(there, hn::Min(this->Nearest, ways.Begin), this->Nearest);
     this->Farthest = hn::IfThenElse(there, ways.End, this->Farthest);
   }
 
@@ -553,8 +545,7 @@ private:
       const int lane = __builtin_ctz(lanes);
       const double front = this->GetMeanExtinction(numbers[0][lane], numbers[6][lane]);
       const double back = this->GetMeanExtinction(numbers[6][lane], numbers[1][lane]);
-      const double wanted =
-        std::log(2.0 * numbers[5][lane]) / numbers[4][lane] * (front + back);
+      const double wanted = std::log(2.0 * numbers[5][lane]) / numbers[4][lane] * (front + back);
       const double part = wanted <= front
         ? 0.5 * this->FindDepth(numbers[0][lane], numbers[6][lane], wanted / front)
         : 0.5 + 0.5 * this->FindDepth(numbers[6][lane], numbers[1][lane], (wanted - front) / back);

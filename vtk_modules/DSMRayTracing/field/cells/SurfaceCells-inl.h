@@ -180,7 +180,6 @@ template <class D>
 class CrossingCounts
 {
 public:
-
   explicit CrossingCounts(int* counts)
     : Counts(counts)
   {

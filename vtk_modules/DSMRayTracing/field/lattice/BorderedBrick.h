@@ -87,8 +87,8 @@ private:
     }
     this->Strides[1] = this->Points[0] + 2;
     this->Strides[2] = this->Strides[1] * (this->Points[1] + 2);
-    samples.resize(static_cast<std::size_t>(this->Strides[2]) *
-      static_cast<std::size_t>(this->Points[2] + 2));
+    samples.resize(
+      static_cast<std::size_t>(this->Strides[2]) * static_cast<std::size_t>(this->Points[2] + 2));
     this->First = samples.data() + 1 + this->Strides[1] + this->Strides[2];
   }
 
@@ -151,8 +151,8 @@ private:
   void GoOn(int axis, int side)
   {
     const int inward = (side == 0 ? 1 : -1) * this->Strides[axis];
-    this->ForFace(axis, side,
-      [&](float* to, int, int, int) { *to = 2.0f * to[inward] - to[2 * inward]; });
+    this->ForFace(
+      axis, side, [&](float* to, int, int, int) { *to = 2.0f * to[inward] - to[2 * inward]; });
   }
 
   double Origin;

@@ -64,8 +64,7 @@ public:
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Origin[axis] =
-        IsStretched ? packet.Planes->GetPlace(axis, origin[axis]) : origin[axis];
+      this->Origin[axis] = IsStretched ? packet.Planes->GetPlace(axis, origin[axis]) : origin[axis];
       this->Count[axis] = this->Fine * static_cast<float>(brick.Cells[axis]);
     }
   }
@@ -134,8 +133,8 @@ private:
         const Vector glare = hn::GatherIndex(tag, this->Brick.Glare, node);
         return hn::Or(hn::Lt(error, hn::Zero(tag)),
           hn::And(isSmooth,
-            hn::Le(hn::Mul(glare, seen),
-              hn::Set(tag, static_cast<float>(MediumTolerance::Glare)))));
+            hn::Le(
+              hn::Mul(glare, seen), hn::Set(tag, static_cast<float>(MediumTolerance::Glare)))));
       };
       Nodes nodes = this->GetNodes(rays, MediumBrick::PartCells);
       Numbers node = this->GetNumbers(nodes, MediumBrick::PartCells, this->Brick.Parts, 0);
@@ -144,8 +143,8 @@ private:
       if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
       {
         const Nodes smaller = this->GetNodes(rays, MediumBrick::MacrocellCells);
-        const Numbers own = this->GetNumbers(smaller, MediumBrick::MacrocellCells,
-          this->Brick.Macrocells, this->Brick.FirstMacrocell);
+        const Numbers own = this->GetNumbers(
+          smaller, MediumBrick::MacrocellCells, this->Brick.Macrocells, this->Brick.FirstMacrocell);
         const Vector ownError = this->FindErrors(own, hn::AndNot(joined, open));
         Choose(joined, smaller, nodes);
         node = hn::IfThenElse(hn::RebindMask(NumberTag(), joined), node, own);
@@ -177,8 +176,8 @@ private:
     return dark;
   }
 
-  void SetRays(int first, std::uint32_t some, std::size_t* number, double* enter,
-    double* distance, Rays& rays) const
+  void SetRays(int first, std::uint32_t some, std::size_t* number, double* enter, double* distance,
+    Rays& rays) const
   {
     const F tag;
     HWY_ALIGN float numbers[13][Width];
@@ -197,8 +196,8 @@ private:
         constexpr double largest = 1e30;
         numbers[axis][lane] = static_cast<float>((start - this->Origin[axis]) * fine);
         numbers[3 + axis][lane] = static_cast<float>(way * distance[lane] * fine);
-        numbers[6 + axis][lane] = static_cast<float>(
-          std::clamp(1.0 / (way * distance[lane] * fine), -largest, largest));
+        numbers[6 + axis][lane] =
+          static_cast<float>(std::clamp(1.0 / (way * distance[lane] * fine), -largest, largest));
       }
       numbers[9][lane] = static_cast<float>(this->Light.Length[ray] * distance[lane]);
       for (int axis = 0; axis < 3; ++axis)
@@ -267,8 +266,7 @@ private:
     for (int axis = 0; axis < 3; ++axis)
     {
       nodes.Low[axis] = hn::Mul(hn::Floor(hn::Mul(rays.Cell[axis], inverse)), edge);
-      nodes.High[axis] =
-        hn::Min(hn::Add(nodes.Low[axis], edge), hn::Set(tag, this->Count[axis]));
+      nodes.High[axis] = hn::Min(hn::Add(nodes.Low[axis], edge), hn::Set(tag, this->Count[axis]));
     }
     this->SetExit(rays, nodes);
     return nodes;
@@ -302,12 +300,11 @@ private:
   {
     const F tag;
     const Vector way = hn::Sub(nodes.Exit, rays.T);
-    const Vector glare = hn::Mul(
-      hn::GatherIndex(tag, this->Brick.Glare, node), hn::Mul(way, seenLength));
-    const Mask bright =
-      hn::Gt(glare, hn::Set(tag, static_cast<float>(MediumTolerance::CellGlare)));
-    nodes.Exit = hn::IfThenElse(hn::And(cells, bright),
-      hn::Add(rays.T, hn::Mul(hn::Set(tag, 0.5f), way)), nodes.Exit);
+    const Vector glare =
+      hn::Mul(hn::GatherIndex(tag, this->Brick.Glare, node), hn::Mul(way, seenLength));
+    const Mask bright = hn::Gt(glare, hn::Set(tag, static_cast<float>(MediumTolerance::CellGlare)));
+    nodes.Exit = hn::IfThenElse(
+      hn::And(cells, bright), hn::Add(rays.T, hn::Mul(hn::Set(tag, 0.5f), way)), nodes.Exit);
   }
   /// Keeps the nodes of `kept`, and takes the others from `other`.
   static HWY_INLINE void Choose(Mask kept, const Nodes& other, Nodes& nodes)
@@ -329,8 +326,8 @@ private:
     const Vector inverse = hn::Set(tag, 1.0f / (this->Fine * static_cast<float>(cells)));
     const Vector rows = hn::Add(hn::Mul(nodes.Low[1], inverse),
       hn::Mul(hn::Mul(nodes.Low[2], inverse), hn::Set(tag, static_cast<float>(count[1]))));
-    const Vector number = hn::Add(hn::Mul(nodes.Low[0], inverse),
-      hn::Mul(rows, hn::Set(tag, static_cast<float>(count[0]))));
+    const Vector number = hn::Add(
+      hn::Mul(nodes.Low[0], inverse), hn::Mul(rows, hn::Set(tag, static_cast<float>(count[0]))));
     return hn::Add(
       hn::ConvertTo(NumberTag(), number), hn::Set(NumberTag(), std::int32_t{ firstNode }));
   }
@@ -339,8 +336,7 @@ private:
   {
     const F tag;
     const Vector error = hn::GatherIndex(tag, this->Brick.Error, node);
-    const Mask unknown =
-      hn::And(rays, hn::Eq(error, hn::Set(tag, MediumBrick::Unknown)));
+    const Mask unknown = hn::And(rays, hn::Eq(error, hn::Set(tag, MediumBrick::Unknown)));
     if (hn::AllFalse(tag, unknown))
     {
       return error;
@@ -405,8 +401,8 @@ private:
   Vector ToPlaces(Vector values) const
   {
     const F tag;
-    return hn::Add(hn::Mul(values, hn::Set(tag, this->Brick.Scale)),
-      hn::Set(tag, this->Brick.Offset));
+    return hn::Add(
+      hn::Mul(values, hn::Set(tag, this->Brick.Scale)), hn::Set(tag, this->Brick.Offset));
   }
 
   /// The samples at places, of which the function's first value is subtracted: those at eight corners of a cell, or one.
@@ -417,8 +413,8 @@ private:
     const Vector row = hn::Mul(place[1], hn::Set(tag, static_cast<float>(this->Brick.Row)));
     const Vector slice = hn::Mul(place[2], hn::Set(tag, static_cast<float>(this->Brick.Slice)));
     HWY_ALIGN std::int32_t offsets[Width];
-    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice)), NumberTag(),
-      offsets);
+    hn::Store(
+      hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice)), NumberTag(), offsets);
     switch (this->Brick.Kind)
     {
       case MediumBrick::SampleKind::Float:
@@ -451,7 +447,7 @@ private:
       {
         if constexpr (std::is_same_v<T, float>)
         {
-          return SetLanes<float, Width>([&](int lane) { return first[offsets[lane] + side]; });
+          return hn::GatherIndex(tag, first + side, hn::Load(NumberTag(), offsets));
         }
         else
         {
@@ -486,8 +482,10 @@ private:
     ways.End = nodes.Exit;
     ways.Length = hn::Mul(hn::Sub(nodes.Exit, rays.T), rays.Length);
     ways.Cubic = hn::Zero(tag);
-    const Places middle =
-      this->FindPlaces(rays, nodes, hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+    const Places middle = this->FindPlaces(rays, nodes, hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+    // In a cell, samples are the same at all places.
+    const bool areCells = hn::AllFalse(tag, hn::And(joined, visible));
+    Vector corners[8];
     if (this->Brick.IsNearest)
     {
       ways.Middle = this->FindNearest(middle.Cell);
@@ -496,12 +494,9 @@ private:
     }
     else
     {
-      Vector corners[8];
       this->LoadSamples<4>(middle.Cell, corners);
       ways.Middle = this->Interpolate(corners, middle.Within);
-      // In a cell, samples are the same at all places.
       const Mask cells = hn::AndNot(joined, visible);
-      const bool areCells = hn::AllFalse(tag, hn::And(joined, visible));
       const auto findValues = [&](Vector t)
       {
         const Places places = this->FindPlaces(rays, nodes, t);
@@ -519,8 +514,7 @@ private:
       }
     }
     // Neither is a value that is not finite.
-    Mask there = hn::And(
-      visible, hn::Eq(hn::Sub(ways.Middle, ways.Middle), hn::Zero(tag)));
+    Mask there = hn::And(visible, hn::Eq(hn::Sub(ways.Middle, ways.Middle), hn::Zero(tag)));
     if (this->Brick.Mask)
     {
       there = hn::And(there, this->FindCovered(middle.Cell, there));
@@ -538,7 +532,7 @@ private:
       if (this->Ways.HasShaded())
       {
         const Vector center = this->Ways.FindCenter(hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
-        this->Shade(rays, this->FindPlaces(rays, nodes, center));
+        this->Shade(rays, this->FindPlaces(rays, nodes, center), areCells ? corners : nullptr);
       }
     }
     else
@@ -549,8 +543,9 @@ private:
     hasValue = there;
   }
 
-  /// Central differences at the corners of cells, interpolated: what CellNeighbourhood::GetGradient finds.
-  HWY_INLINE void FindGradients(const Places& places, Vector gradient[3]) const
+  /// Central differences at the corners of cells, interpolated: what CellNeighbourhood::GetGradient finds. `known`: the
+  /// samples at the corners, or null.
+  HWY_INLINE void FindGradients(const Places& places, const Vector* known, Vector gradient[3]) const
   {
     const F tag;
     const int strides[3] = { 1, this->Brick.Row, this->Brick.Slice };
@@ -558,29 +553,25 @@ private:
     const Vector row = hn::Mul(places.Cell[1], hn::Set(tag, static_cast<float>(strides[1])));
     const Vector slice = hn::Mul(places.Cell[2], hn::Set(tag, static_cast<float>(strides[2])));
     HWY_ALIGN std::int32_t offsets[Width];
-    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(places.Cell[0], row), slice)),
-      NumberTag(), offsets);
-    const auto load = [&](int offset)
-    {
-      const float* const first = samples + offset;
-      return SetLanes<float, Width>([&](int lane) { return first[offsets[lane]]; });
-    };
+    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(places.Cell[0], row), slice)), NumberTag(),
+      offsets);
+    const Numbers from = hn::Load(NumberTag(), offsets);
+    const auto load = [&](int offset) { return hn::GatherIndex(tag, samples + offset, from); };
     const auto mix = [](Vector a, Vector b, Vector part)
     { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
     Vector corners[8];
     for (int corner = 0; corner < 8; ++corner)
     {
-      corners[corner] = load((corner & 1) + (corner >> 1 & 1) * strides[1] +
-        (corner >> 2) * strides[2]);
+      corners[corner] = known
+        ? known[corner]
+        : load((corner & 1) + (corner >> 1 & 1) * strides[1] + (corner >> 2) * strides[2]);
     }
     for (int axis = 0; axis < 3; ++axis)
     {
       const int u = axis == 0 ? 1 : 0;
       const int v = axis == 2 ? 1 : 2;
       const auto interpolate = [&](Vector a, Vector b, Vector c, Vector d)
-      {
-        return mix(mix(a, b, places.Within[u]), mix(c, d, places.Within[u]), places.Within[v]);
-      };
+      { return mix(mix(a, b, places.Within[u]), mix(c, d, places.Within[u]), places.Within[v]); };
       const auto getPlane = [&](int plane)
       {
         const int first = plane << axis;
@@ -603,19 +594,18 @@ private:
       };
       const Vector before = goOn(loadPlane(-1), lower, upper);
       const Vector behind = goOn(loadPlane(2), upper, lower);
-      gradient[axis] = mix(
-        hn::Sub(upper, before), hn::Sub(behind, lower), places.Within[axis]);
+      gradient[axis] = mix(hn::Sub(upper, before), hn::Sub(behind, lower), places.Within[axis]);
     }
   }
 
   /// Shades what MediumPieces has kept apart: as MediumLighting does.
-  HWY_INLINE void Shade(const Rays& rays, const Places& places)
+  HWY_INLINE void Shade(const Rays& rays, const Places& places, const Vector* corners)
   {
     const F tag;
     const MediumShading& shading = *this->Brick.Shading;
     const Vector zero = hn::Zero(tag);
     Vector gradient[3];
-    this->FindGradients(places, gradient);
+    this->FindGradients(places, corners, gradient);
     const auto dot = [](const Vector a[3], const Vector b[3])
     { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
     const auto set = [&](const glm::vec3& from, Vector to[3])
@@ -626,10 +616,11 @@ private:
       }
     };
     // A gradient of any size, within what squares can hold.
-    const Vector largest = hn::Max(
-      hn::Max(hn::Abs(gradient[0]), hn::Abs(gradient[1])), hn::Abs(gradient[2]));
+    const Vector largest =
+      hn::Max(hn::Max(hn::Abs(gradient[0]), hn::Abs(gradient[1])), hn::Abs(gradient[2]));
     const Mask isThere = hn::Gt(largest, zero);
-    const Vector unit = hn::Div(hn::Set(tag, 1.0f), hn::IfThenElse(isThere, largest, hn::Set(tag, 1.0f)));
+    const Vector unit =
+      hn::Div(hn::Set(tag, 1.0f), hn::IfThenElse(isThere, largest, hn::Set(tag, 1.0f)));
     for (Vector& part : gradient)
     {
       part = hn::Mul(part, unit);
@@ -661,20 +652,19 @@ private:
       const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
       for (int channel = 0; channel < 3; ++channel)
       {
-        ofEmission[channel] = hn::Add(
-          ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
+        ofEmission[channel] =
+          hn::Add(ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
       }
       if (shading.HasHighlights)
       {
         const Vector twice = hn::Mul(hn::Add(along, along), towardViewer);
         const Vector highlight = hn::Add(dot(direction, rays.ToViewer), twice);
         const Mask shines = hn::And(hn::Gt(highlight, zero), hn::Gt(cosine, zero));
-        const Vector power =
-          hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
+        const Vector power = hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
         for (int channel = 0; channel < 3; ++channel)
         {
-          ofOpacity[channel] = hn::Add(
-            ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
+          ofOpacity[channel] =
+            hn::Add(ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
         }
       }
     }
@@ -692,8 +682,7 @@ private:
     const Vector twice = hn::Add(ways.Middle, ways.Middle);
     // The quadratic at 1 / 4.
     const Vector bend = hn::Sub(hn::Add(ways.First, ways.Last), twice);
-    const Vector line =
-      hn::Add(ways.First, hn::Mul(quarter, hn::Sub(ways.Last, ways.First)));
+    const Vector line = hn::Add(ways.First, hn::Mul(quarter, hn::Sub(ways.Last, ways.First)));
     const Vector quadratic = hn::Sub(line, hn::Mul(hn::Set(tag, 0.375f), bend));
     const Vector cubic =
       hn::Mul(hn::Sub(value, quadratic), hn::Set(tag, static_cast<float>(64.0 / 3.0)));
@@ -706,8 +695,7 @@ private:
     Vector place[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      place[axis] = hn::Floor(
-        hn::Mul(hn::Add(cell[axis], hn::Set(tag, 1.0f)), hn::Set(tag, 0.5f)));
+      place[axis] = hn::Floor(hn::Mul(hn::Add(cell[axis], hn::Set(tag, 1.0f)), hn::Set(tag, 0.5f)));
     }
     Vector sample;
     this->LoadSamples<0>(place, &sample);
@@ -746,8 +734,8 @@ private:
     for (int axis = 0; axis < 3; ++axis)
     {
       const Vector point = hn::Add(rays.Start[axis], hn::Mul(rays.T, rays.Way[axis]));
-      const Vector inside = this->FindCells(
-        axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), PartSteps);
+      const Vector inside =
+        this->FindCells(axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), PartSteps);
       const Vector next =
         this->Packet.Forward[axis] ? nodes.High[axis] : hn::Sub(nodes.Low[axis], one);
       cells[axis] = hn::IfThenElse(hn::Le(nodes.Leave[axis], rays.T), next, inside);

@@ -181,9 +181,8 @@ private:
     Search(packet, rays, brick, origin, counted);
   }
 
-  static RayPacket::Mask March(const RayPacket& packet, RayPacket::Mask rays,
-    MediumBrick& brick, const double origin[3], const TransferFunction& function,
-    MediumLight& light)
+  static RayPacket::Mask March(const RayPacket& packet, RayPacket::Mask rays, MediumBrick& brick,
+    const double origin[3], const TransferFunction& function, MediumLight& light)
   {
     using Floats = hn::CappedTag<float, Width == 1 ? 1 : 16>;
     return packet.Planes

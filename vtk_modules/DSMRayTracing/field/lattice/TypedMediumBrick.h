@@ -123,8 +123,7 @@ public:
     {
       bend = this->FindStretchedBend(place);
     }
-    this->Memory.Error[at] = 
-      static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
+    this->Memory.Error[at] = static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
     // How far normals turn in the node, at most: its second differences beside its first.
     const double range = static_cast<double>(values.Max) - static_cast<double>(values.Min);
     const double edge = isPart ? PartCells : MacrocellCells;
@@ -230,13 +229,14 @@ private:
       last[axis] =
         std::min(edge * (part[static_cast<std::size_t>(axis)] + 1), this->Macrocells[axis]);
     }
-    bricks::MacrocellRange<T> all{ std::numeric_limits<T>::max(), std::numeric_limits<T>::lowest() };
+    bricks::MacrocellRange<T> all{ std::numeric_limits<T>::max(),
+      std::numeric_limits<T>::lowest() };
     for (int z = edge * part[2]; z < last[2]; ++z)
     {
       for (int y = edge * part[1]; y < last[1]; ++y)
       {
-        const bricks::MacrocellRange<T>* const row = this->Brick.GetMacrocellRanges() +
-          this->Macrocells[0] * (y + this->Macrocells[1] * z);
+        const bricks::MacrocellRange<T>* const row =
+          this->Brick.GetMacrocellRanges() + this->Macrocells[0] * (y + this->Macrocells[1] * z);
         for (int x = edge * part[0]; x < last[0]; ++x)
         {
           all.Min = std::min(all.Min, row[x].Min);

@@ -65,13 +65,12 @@ protected:
     const typename Store::Pin pin =
       this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
     const bricks::VoxelBrick<T> voxels(pin.GetData());
-    TypedMediumBrick<T> medium(voxels, function, light.Nearest, packet.Planes, brick.Lower,
-      this->Kernel.Macrocells, memory);
+    TypedMediumBrick<T> medium(
+      voxels, function, light.Nearest, packet.Planes, brick.Lower, this->Kernel.Macrocells, memory);
     if (light.Shading)
     {
       memory.Shading = *light.Shading;
-      memory.Shading.ToNormal =
-        -glm::mat3(glm::transpose(field.GetIndexSpace().GetWorldToIndex()));
+      memory.Shading.ToNormal = -glm::mat3(glm::transpose(field.GetIndexSpace().GetWorldToIndex()));
       medium.Shading = &memory.Shading;
     }
     dark = this->Kernel.March(packet, meets, medium, brick.Lower, function, light);

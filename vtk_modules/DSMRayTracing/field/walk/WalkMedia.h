@@ -54,7 +54,8 @@ private:
     {
       const double begin = number / count;
       const double end = (number + 1.0) / count;
-      const double next = function.GetPlace(end < 1.0 ? segment.Values.Evaluate(end) : segment.Last);
+      const double next =
+        function.GetPlace(end < 1.0 ? segment.Values.Evaluate(end) : segment.Last);
       const double way = next - place;
       const Lanes before = integral;
       integral = function.Integrate(next, slope);
