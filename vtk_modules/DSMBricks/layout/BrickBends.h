@@ -18,7 +18,7 @@ namespace bricks
 // How far the values along any line through a node of a brick (a macrocell or a part) may be from a quadratic through
 // three of them: at both ends and in the middle. A byte each, logarithmic, in units of the brick's range.
 
-/// Of a node with values that are not finite, or with cells that the mask leaves out.
+/// A node has this if values are not finite, or if the mask leaves cells out.
 constexpr std::uint8_t NoBend = 255;
 /// The byte of a bend as large as the brick's range, and steps in an octave.
 constexpr int UnitBend = 240;
@@ -167,7 +167,7 @@ public:
     }
   }
 
-  /// Those of the cells [first, last) of that row.
+  /// Returns what was found in the cells [first, last) of that row.
   NodeBends Get(int first, int last)
   {
     NodeBends bends;

@@ -45,7 +45,7 @@ public:
       this->Block + VoxelBrickHeader::MacrocellOffset);
   }
 
-  /// Of macrocells, then of parts; see BrickBends.h.
+  /// The bends of macrocells, then those of parts; see BrickBends.h.
   const std::uint8_t* GetBends() const
   {
     return reinterpret_cast<const std::uint8_t*>(this->Block + this->Header.BendOffset);

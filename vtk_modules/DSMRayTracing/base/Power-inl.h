@@ -22,8 +22,8 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// base^power, for floats from 0 to 1 and a power that is not negative, to 1e-6 of 1 for powers up to 100; the same bits
-/// for vectors of any width.
+/// Returns base^power, for floats from 0 to 1 and a power that is not negative. The error is 1e-6 for powers up to 100.
+/// The bits are the same for vectors of any width.
 template <class Vector>
 HWY_INLINE Vector GetPower(Vector base, float power)
 {

@@ -26,7 +26,7 @@ public:
   /// Keeps references.
   MediumLighting(const SceneTracers& tracers, const Scene& scene);
 
-  /// What is needed to shade a medium of that look while rays march through it; nothing, if that cannot be.
+  /// Returns the light that shades a medium of that look while rays march through it; nothing, if pieces are needed.
   std::optional<MediumShading> FindShading(const MediumLook& look) const;
 
   /// Gives the pieces that have a look the color that they have in that light, of those of the rays that are `wanted`;

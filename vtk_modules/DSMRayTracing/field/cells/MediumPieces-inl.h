@@ -57,7 +57,7 @@ public:
     Vector Begin;  ///< in the unit of SetRays
     Vector End;
   };
-  /// Of the function where ways are: Change, and Extinction times Tinge, of TransferFunction::Behavior.
+  /// The function's behavior where ways are: Change, and Extinction times Tinge, of TransferFunction::Behavior.
   struct Behavior
   {
     Vector Change;
@@ -134,7 +134,7 @@ public:
     }
   }
 
-  /// Between these, what ways add is kept apart: it is shaded as a whole.
+  /// Between these, ways add to sums of their own, which are shaded at one place.
   void BeginShaded()
   {
     this->IsShaded = true;
@@ -514,7 +514,7 @@ private:
     Vector* const sum = this->IsShaded ? this->Own : this->Sum;
     for (int channel = 0; channel < 3; ++channel)
     {
-      // What is not there may not be a number.
+      // Lanes without a piece may hold anything.
       sum[channel] =
         hn::Add(sum[channel], hn::IfThenElseZero(there, hn::Mul(share, amount[channel])));
     }
@@ -528,7 +528,7 @@ private:
     this->Farthest = hn::IfThenElse(there, ways.End, this->Farthest);
   }
 
-  /// Tells where half of the light is gone, in pieces of those lanes (bits).
+  /// Finds where half of the light is gone, in pieces of those lanes (bits).
   HWY_NOINLINE void Locate(const Ways& ways, Vector depth, std::uint32_t lanes)
   {
     const F tag;

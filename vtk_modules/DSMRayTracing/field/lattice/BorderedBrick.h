@@ -17,8 +17,8 @@ namespace rt
 {
 
 /// Copies a brick with the samples next to it, which central differences in its cells need: those across its faces, but
-/// not across its edges. Outside of the volume, values go on as they do at its border, so that the difference there is
-/// that of the two samples next to it.
+/// not across its edges. The volume's border is extrapolated, so that the difference there is that of the two samples
+/// next to it.
 template <class T>
 class BorderedBrick
 {

@@ -9,20 +9,16 @@
 
 #include "DSMBricks/layout/GridPlanes.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
-#include "DSMRayTracing/base/Power-inl.h"
 #include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/field/cells/MediumPieces-inl.h"
+#include "DSMRayTracing/field/lattice/GradientShading-inl.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
-#include "DSMRayTracing/ray/MediumShading.h"
 #include "DSMRayTracing/ray/RayPacket.h"
 
 #include <hwy/highway.h>
-
-#include <glm/gtc/matrix_access.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -36,9 +32,9 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The rays of a packet through a medium in a brick. Each goes from node to node in its own lane of a vector: through a
-/// part of the brick or a macrocell in one step, where all that it holds is invisible, or where values along any ray
-/// through it are so nearly quadratic that the pixel cannot tell, else through a cell. A step asks for values where it
+/// The rays of a packet through a medium in a brick. Each goes from node to node in its own lane of a vector. It takes
+/// a part of the brick or a macrocell in one step where all that this holds is invisible, or where values along any
+/// ray are so nearly quadratic that the pixel cannot tell. Elsewhere it takes a cell. A step asks for values where it
 /// begins, in its middle and where it ends.
 ///
 /// In single precision, in coordinates of the brick. `IsStretched`: in a rectilinear grid.
@@ -397,7 +393,7 @@ private:
       mix(corners[4], corners[5], within[0]), mix(corners[6], corners[7], within[0]), within[1]);
     return this->ToPlaces(mix(front, back, within[2]));
   }
-  /// Of values less Subtracted.
+  /// Returns the places of values from which Subtracted is subtracted.
   Vector ToPlaces(Vector values) const
   {
     const F tag;
@@ -405,7 +401,7 @@ private:
       hn::Mul(values, hn::Set(tag, this->Brick.Scale)), hn::Set(tag, this->Brick.Offset));
   }
 
-  /// The samples at places, of which the function's first value is subtracted: those at eight corners of a cell, or one.
+  /// Loads samples less Subtracted: at the corners of cells, in as many pairs on x, or at places themselves (no pairs).
   template <int Pairs>
   HWY_INLINE void LoadSamples(const Vector place[3], Vector* samples) const
   {
@@ -543,131 +539,15 @@ private:
     hasValue = there;
   }
 
-  /// Central differences at the corners of cells, interpolated: what CellNeighbourhood::GetGradient finds. `known`: the
-  /// samples at the corners, or null.
-  HWY_INLINE void FindGradients(const Places& places, const Vector* known, Vector gradient[3]) const
-  {
-    const F tag;
-    const int strides[3] = { 1, this->Brick.Row, this->Brick.Slice };
-    const auto* const samples = static_cast<const float*>(this->Brick.Samples);
-    const Vector row = hn::Mul(places.Cell[1], hn::Set(tag, static_cast<float>(strides[1])));
-    const Vector slice = hn::Mul(places.Cell[2], hn::Set(tag, static_cast<float>(strides[2])));
-    HWY_ALIGN std::int32_t offsets[Width];
-    hn::Store(hn::ConvertTo(NumberTag(), hn::Add(hn::Add(places.Cell[0], row), slice)), NumberTag(),
-      offsets);
-    const Numbers from = hn::Load(NumberTag(), offsets);
-    const auto load = [&](int offset) { return hn::GatherIndex(tag, samples + offset, from); };
-    const auto mix = [](Vector a, Vector b, Vector part)
-    { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
-    Vector corners[8];
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      corners[corner] = known
-        ? known[corner]
-        : load((corner & 1) + (corner >> 1 & 1) * strides[1] + (corner >> 2) * strides[2]);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int u = axis == 0 ? 1 : 0;
-      const int v = axis == 2 ? 1 : 2;
-      const auto interpolate = [&](Vector a, Vector b, Vector c, Vector d)
-      { return mix(mix(a, b, places.Within[u]), mix(c, d, places.Within[u]), places.Within[v]); };
-      const auto getPlane = [&](int plane)
-      {
-        const int first = plane << axis;
-        return interpolate(corners[first], corners[first + (1 << u)], corners[first + (1 << v)],
-          corners[first + (1 << u) + (1 << v)]);
-      };
-      const auto loadPlane = [&](int plane)
-      {
-        const int first = plane * strides[axis];
-        return interpolate(load(first), load(first + strides[u]), load(first + strides[v]),
-          load(first + strides[u] + strides[v]));
-      };
-      const Vector lower = getPlane(0);
-      const Vector upper = getPlane(1);
-      // Next to samples that are not finite, the difference of two.
-      const auto goOn = [&](Vector beyond, Vector near, Vector other)
-      {
-        const Mask isFinite = hn::Eq(hn::Sub(beyond, beyond), hn::Zero(tag));
-        return hn::IfThenElse(isFinite, beyond, hn::Sub(hn::Add(near, near), other));
-      };
-      const Vector before = goOn(loadPlane(-1), lower, upper);
-      const Vector behind = goOn(loadPlane(2), upper, lower);
-      gradient[axis] = mix(hn::Sub(upper, before), hn::Sub(behind, lower), places.Within[axis]);
-    }
-  }
-
-  /// Shades what MediumPieces has kept apart: as MediumLighting does.
+  /// Shades what MediumPieces has kept apart, at places. `corners`: the samples around them, or null.
   HWY_INLINE void Shade(const Rays& rays, const Places& places, const Vector* corners)
   {
-    const F tag;
-    const MediumShading& shading = *this->Brick.Shading;
-    const Vector zero = hn::Zero(tag);
+    using Shading = GradientShading<F>;
     Vector gradient[3];
-    this->FindGradients(places, corners, gradient);
-    const auto dot = [](const Vector a[3], const Vector b[3])
-    { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
-    const auto set = [&](const glm::vec3& from, Vector to[3])
-    {
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        to[axis] = hn::Set(tag, from[axis]);
-      }
-    };
-    // A gradient of any size, within what squares can hold.
-    const Vector largest =
-      hn::Max(hn::Max(hn::Abs(gradient[0]), hn::Abs(gradient[1])), hn::Abs(gradient[2]));
-    const Mask isThere = hn::Gt(largest, zero);
-    const Vector unit =
-      hn::Div(hn::Set(tag, 1.0f), hn::IfThenElse(isThere, largest, hn::Set(tag, 1.0f)));
-    for (Vector& part : gradient)
-    {
-      part = hn::Mul(part, unit);
-    }
-    Vector normal[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      Vector column[3];
-      set(glm::row(shading.ToNormal, axis), column);
-      normal[axis] = dot(column, gradient);
-    }
-    const Vector square = dot(normal, normal);
-    const Mask hasNormal = hn::And(isThere, hn::Gt(square, zero));
-    const Vector length = hn::Sqrt(hn::IfThenElse(hasNormal, square, hn::Set(tag, 1.0f)));
-    for (Vector& part : normal)
-    {
-      part = hn::IfThenElseZero(hasNormal, hn::Div(part, length));
-    }
-    const Vector towardViewer = dot(normal, rays.ToViewer);
+    Shading::FindGradients(this->Brick, places.Cell, places.Within, corners, gradient);
     Vector ofEmission[3];
     Vector ofOpacity[3];
-    set(shading.Ambient, ofEmission);
-    set(shading.AmbientOpacity, ofOpacity);
-    for (const MediumShading::Lamp& lamp : shading.Lamps)
-    {
-      Vector direction[3];
-      set(lamp.Direction, direction);
-      const Vector along = hn::Neg(dot(normal, direction));
-      const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
-      for (int channel = 0; channel < 3; ++channel)
-      {
-        ofEmission[channel] =
-          hn::Add(ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
-      }
-      if (shading.HasHighlights)
-      {
-        const Vector twice = hn::Mul(hn::Add(along, along), towardViewer);
-        const Vector highlight = hn::Add(dot(direction, rays.ToViewer), twice);
-        const Mask shines = hn::And(hn::Gt(highlight, zero), hn::Gt(cosine, zero));
-        const Vector power = hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
-        for (int channel = 0; channel < 3; ++channel)
-        {
-          ofOpacity[channel] =
-            hn::Add(ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
-        }
-      }
-    }
+    Shading::Shade(*this->Brick.Shading, gradient, rays.ToViewer, ofEmission, ofOpacity);
     this->Ways.EndShaded(ofEmission, ofOpacity);
   }
 
@@ -702,7 +582,7 @@ private:
     return this->ToPlaces(sample);
   }
 
-  /// Those of `rays` whose cells the mask lets hold data.
+  /// Returns the subset of `rays` whose cells the mask lets hold data.
   HWY_NOINLINE Mask FindCovered(const Vector cell[3], Mask rays) const
   {
     const F tag;
@@ -745,7 +625,7 @@ private:
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      // Those that have left the brick need cells that exist, too.
+      // Rays that have left the brick need cells that exist, too.
       rays.Cell[axis] =
         hn::IfThenElse(some, hn::IfThenElseZero(open, cells[axis]), rays.Cell[axis]);
     }

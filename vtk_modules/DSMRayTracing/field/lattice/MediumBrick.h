@@ -52,9 +52,9 @@ public:
   int Parts[3]; ///< in each direction
   int Macrocells[3];
   int FirstMacrocell;
-  /// Of nodes that Describe was called for: error of the optical depth of a unit of length, if a ray goes through the
-  /// node in one step, and values along it are taken for quadratic; infinite, where cells may hold no data. Unseen: no
-  /// value of the node is visible. Unknown: not described yet.
+  /// The error of the optical depth of a unit of length, if a ray goes through the node in one step, and values along
+  /// it are taken for quadratic. Infinite: cells may hold no data. Unseen: no value of the node is visible. Unknown:
+  /// Describe was not called for the node.
   const float* Error;
   static constexpr float Unseen = -1.0f;
   static constexpr float Unknown = -2.0f;

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Included once for each instruction set; see PacketKernel.cxx.
+#if defined(rt_GradientShading_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef rt_GradientShading_inl_h
+#undef rt_GradientShading_inl_h
+#else
+#define rt_GradientShading_inl_h
+#endif
+
+#include "DSMRayTracing/base/Power-inl.h"
+#include "DSMRayTracing/field/lattice/MediumBrick.h"
+#include "DSMRayTracing/ray/MediumShading.h"
+
+#include <hwy/highway.h>
+
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rt
+{
+namespace HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Shades a medium by the gradients of its values, for a vector of rays.
+template <class F>
+class GradientShading
+{
+public:
+  using Vector = hn::Vec<F>;
+  using Mask = hn::Mask<F>;
+  using NumberTag = hn::RebindToSigned<F>;
+  using Numbers = hn::Vec<NumberTag>;
+  static constexpr int Width = static_cast<int>(hn::MaxLanes(F()));
+
+  /// Finds the gradients at places in cells of a brick whose samples have a border: what CellNeighbourhood::GetGradient
+  /// finds. `known`: the samples at the corners, or null.
+  static HWY_INLINE void FindGradients(const MediumBrick& brick, const Vector cell[3],
+    const Vector within[3], const Vector* known, Vector gradient[3])
+  {
+    const F tag;
+    const int strides[3] = { 1, brick.Row, brick.Slice };
+    const auto* const samples = static_cast<const float*>(brick.Samples);
+    const Vector row = hn::Mul(cell[1], hn::Set(tag, static_cast<float>(strides[1])));
+    const Vector slice = hn::Mul(cell[2], hn::Set(tag, static_cast<float>(strides[2])));
+    HWY_ALIGN std::int32_t offsets[Width];
+    hn::Store(
+      hn::ConvertTo(NumberTag(), hn::Add(hn::Add(cell[0], row), slice)), NumberTag(), offsets);
+    const Numbers from = hn::Load(NumberTag(), offsets);
+    const auto load = [&](int offset) { return hn::GatherIndex(tag, samples + offset, from); };
+    const auto mix = [](Vector a, Vector b, Vector part)
+    { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
+    Vector corners[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = known
+        ? known[corner]
+        : load((corner & 1) + (corner >> 1 & 1) * strides[1] + (corner >> 2) * strides[2]);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int u = axis == 0 ? 1 : 0;
+      const int v = axis == 2 ? 1 : 2;
+      const auto interpolate = [&](Vector a, Vector b, Vector c, Vector d)
+      { return mix(mix(a, b, within[u]), mix(c, d, within[u]), within[v]); };
+      const auto getPlane = [&](int plane)
+      {
+        const int first = plane << axis;
+        return interpolate(corners[first], corners[first + (1 << u)], corners[first + (1 << v)],
+          corners[first + (1 << u) + (1 << v)]);
+      };
+      const auto loadPlane = [&](int plane)
+      {
+        const int first = plane * strides[axis];
+        return interpolate(load(first), load(first + strides[u]), load(first + strides[v]),
+          load(first + strides[u] + strides[v]));
+      };
+      const Vector lower = getPlane(0);
+      const Vector upper = getPlane(1);
+      // Next to samples that are not finite, the difference of two.
+      const auto goOn = [&](Vector beyond, Vector near, Vector other)
+      {
+        const Mask isFinite = hn::Eq(hn::Sub(beyond, beyond), hn::Zero(tag));
+        return hn::IfThenElse(isFinite, beyond, hn::Sub(hn::Add(near, near), other));
+      };
+      const Vector before = goOn(loadPlane(-1), lower, upper);
+      const Vector behind = goOn(loadPlane(2), upper, lower);
+      gradient[axis] = mix(hn::Sub(upper, before), hn::Sub(behind, lower), within[axis]);
+    }
+  }
+
+  /// Finds the factors of emission and opacity (MediumPieces::EndShaded), as MediumLighting shades. Changes the size of
+  /// the gradients.
+  static HWY_INLINE void Shade(const MediumShading& shading, Vector gradient[3],
+    const Vector toViewer[3], Vector ofEmission[3], Vector ofOpacity[3])
+  {
+    const F tag;
+    const Vector zero = hn::Zero(tag);
+    const auto dot = [](const Vector a[3], const Vector b[3])
+    { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
+    const auto set = [&](const glm::vec3& from, Vector to[3])
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        to[axis] = hn::Set(tag, from[axis]);
+      }
+    };
+    // A gradient of any size, within what squares can hold.
+    const Vector largest =
+      hn::Max(hn::Max(hn::Abs(gradient[0]), hn::Abs(gradient[1])), hn::Abs(gradient[2]));
+    const Mask isThere = hn::Gt(largest, zero);
+    const Vector unit =
+      hn::Div(hn::Set(tag, 1.0f), hn::IfThenElse(isThere, largest, hn::Set(tag, 1.0f)));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      gradient[axis] = hn::Mul(gradient[axis], unit);
+    }
+    Vector normal[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      Vector column[3];
+      set(glm::row(shading.ToNormal, axis), column);
+      normal[axis] = dot(column, gradient);
+    }
+    const Vector square = dot(normal, normal);
+    const Mask hasNormal = hn::And(isThere, hn::Gt(square, zero));
+    const Vector length = hn::Sqrt(hn::IfThenElse(hasNormal, square, hn::Set(tag, 1.0f)));
+    for (Vector& part : normal)
+    {
+      part = hn::IfThenElseZero(hasNormal, hn::Div(part, length));
+    }
+    const Vector towardViewer = dot(normal, toViewer);
+    set(shading.Ambient, ofEmission);
+    set(shading.AmbientOpacity, ofOpacity);
+    for (const MediumShading::Lamp& lamp : shading.Lamps)
+    {
+      Vector direction[3];
+      set(lamp.Direction, direction);
+      const Vector along = hn::Neg(dot(normal, direction));
+      const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
+      for (int channel = 0; channel < 3; ++channel)
+      {
+        ofEmission[channel] =
+          hn::Add(ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
+      }
+      if (shading.HasHighlights)
+      {
+        const Vector twice = hn::Mul(hn::Add(along, along), towardViewer);
+        const Vector highlight = hn::Add(dot(direction, toViewer), twice);
+        const Mask shines = hn::And(hn::Gt(highlight, zero), hn::Gt(cosine, zero));
+        const Vector power = hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
+        for (int channel = 0; channel < 3; ++channel)
+        {
+          ofOpacity[channel] =
+            hn::Add(ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
+        }
+      }
+    }
+  }
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace rt
+HWY_AFTER_NAMESPACE();
+
+#endif
