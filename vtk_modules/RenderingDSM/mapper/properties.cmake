@@ -44,7 +44,7 @@ dsm_setting(Scattering OWNER volume OWN_METHOD TYPE double DEFAULT 0.75 RANGE 0 
   TEXT "Fraction of the shading that comes from light scattered once by the volume, while the view has shadows or
     ambient occlusion. Dense volumes are nearly black without it. 0 turns it off.")
 
-dsm_setting(ExactIntegration OWNER voxels TYPE bool DEFAULT 0
+dsm_setting(ExactIntegration OWNER volume TYPE bool DEFAULT 0
   LABEL "Exact Integration" PANEL advanced WHEN volume
   TEXT "Integrate the volume to a small part of a step of the picture's 8-bit channels, cell by cell. Off: take several
     cells at once where values bend so little that the picture does not show it."
