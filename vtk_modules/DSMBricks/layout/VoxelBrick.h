@@ -45,12 +45,6 @@ public:
       this->Block + VoxelBrickHeader::MacrocellOffset);
   }
 
-  /// The bends of macrocells, then those of parts; see BrickBends.h.
-  const std::uint8_t* GetBends() const
-  {
-    return reinterpret_cast<const std::uint8_t*>(this->Block + this->Header.BendOffset);
-  }
-
   const T* GetSamples() const { return this->Samples; }
   /// Samples from one point to the next on y, and on z; on x it is 1.
   int GetRow() const { return this->Row; }

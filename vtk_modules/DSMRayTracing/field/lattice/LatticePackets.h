@@ -109,7 +109,6 @@ public:
 
   RayPacket& GetCoarsest() { return this->Packet; }
   RayPacket& Get(dsm::BlockId) { return this->Packet; }
-  glm::dvec3 GetScale(dsm::BlockId) const { return glm::dvec3(1.0); }
   const bricks::ValueRange& GetRange(dsm::BlockId id) const
   {
     return this->Field.Voxels->Hierarchy.GetLevels()[0].Ranges[id];

@@ -22,14 +22,12 @@ struct MacrocellSamples
   /// Factors for the differences of values behind and before each inner plane of the macrocell (from 0 on) of a
   /// rectilinear grid. Their difference is then the change of the values' slope over the wider of the two cells.
   /// The factors are 1 where widths are equal.
-  bool IsStretched = false;
   float Behind[3][RowLength] = {};
   float Before[3][RowLength] = {};
 
   /// `inverse`: reciprocals of the widths of the cells on an axis.
   void SetWidths(int axis, const double* inverse)
   {
-    this->IsStretched = true;
     for (int plane = 0; plane + 1 < this->Counts[axis]; ++plane)
     {
       const double before = inverse[plane];

@@ -29,7 +29,6 @@ class UniformPlanes
 {
 public:
   using Vector = hn::Vec<D>;
-  static constexpr bool AreUniform = true;
 
   explicit UniformPlanes(const RayPacket& packet)
     : Forward(packet.Forward)
@@ -74,16 +73,6 @@ public:
     HWY_INLINE Vector GetWithin(Vector point) const { return hn::Sub(point, this->Lower); }
   };
 
-  HWY_INLINE Vector GetPlace(int, Vector plane) const { return plane; }
-
-  /// Cells of macrocells on an axis, whose first cells are `first`.
-  struct Macrocell
-  {
-    HWY_INLINE Macrocell(const UniformPlanes&, int, Vector) {}
-    /// The cells that points in the macrocells are in, but for points at the ends.
-    HWY_INLINE Vector FindCell(Vector point) const { return hn::Floor(point); }
-  };
-
 private:
   const bool* Forward;
 };
@@ -94,7 +83,6 @@ class StretchedPlanes
 {
 public:
   using Vector = hn::Vec<D>;
-  static constexpr bool AreUniform = false;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   explicit StretchedPlanes(const RayPacket& packet)
@@ -152,39 +140,6 @@ public:
     HWY_INLINE Vector GetWithin(Vector point) const
     {
       return hn::Mul(hn::Sub(point, this->Lower), this->Inverse);
-    }
-  };
-
-  HWY_INLINE Vector GetPlace(int axis, Vector plane) const
-  {
-    HWY_ALIGN std::uint64_t at[Width];
-    hn::Store(ToNumbers(plane), hn::RebindToUnsigned<D>(), at);
-    const double* const places = this->Places[axis];
-    return SetLanes<double, Width>([&](int lane) { return places[at[lane]]; });
-  }
-
-  struct Macrocell
-  {
-    Vector First;
-    Vector Inner[3]; ///< planes between the cells
-
-    HWY_INLINE Macrocell(const StretchedPlanes& planes, int axis, Vector first)
-      : First(first)
-    {
-      for (int plane = 0; plane < 3; ++plane)
-      {
-        this->Inner[plane] =
-          planes.GetPlace(axis, hn::Add(first, hn::Set(D(), static_cast<double>(plane + 1))));
-      }
-    }
-    HWY_INLINE Vector FindCell(Vector point) const
-    {
-      Vector cell = this->First;
-      for (const Vector& plane : this->Inner)
-      {
-        cell = hn::Add(cell, hn::IfThenElseZero(hn::Ge(point, plane), hn::Set(D(), 1.0)));
-      }
-      return cell;
     }
   };
 

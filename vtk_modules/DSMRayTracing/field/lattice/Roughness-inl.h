@@ -31,32 +31,17 @@ class Roughness
   using Vector = hn::Vec<Tag>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(Tag()));
 
-public:
-  static double Find(const MacrocellSamples& samples)
-  {
-    return samples.IsStretched ? Find<true>(samples) : Find<false>(samples);
-  }
-
-private:
   /// How much two differences that follow one another differ; `plane`: the one between them, or the first of a vector.
-  template <bool IsStretched>
   static HWY_INLINE Vector GetChange(
     const MacrocellSamples& samples, int axis, int plane, Vector behind, Vector before)
   {
-    if constexpr (IsStretched)
-    {
-      const auto load = [&](const float* factors)
-      { return axis == 0 ? hn::LoadU(Tag(), factors + plane) : hn::Set(Tag(), factors[plane]); };
-      return hn::Sub(
-        hn::Mul(load(samples.Behind[axis]), behind), hn::Mul(load(samples.Before[axis]), before));
-    }
-    else
-    {
-      return hn::Sub(behind, before);
-    }
+    const auto load = [&](const float* factors)
+    { return axis == 0 ? hn::LoadU(Tag(), factors + plane) : hn::Set(Tag(), factors[plane]); };
+    return hn::Sub(
+      hn::Mul(load(samples.Behind[axis]), behind), hn::Mul(load(samples.Before[axis]), before));
   }
 
-  template <bool IsStretched>
+public:
   static double Find(const MacrocellSamples& samples)
   {
     const int* const counts = samples.Counts;
@@ -78,8 +63,7 @@ private:
           const Vector here = get(0, 0, part, 0);
           const Vector next = get(0, 0, part, 1);
           const Vector along = hn::Sub(next, here);
-          xx.Raise(part,
-            GetChange<IsStretched>(samples, 0, part, hn::Sub(get(0, 0, part, 2), next), along));
+          xx.Raise(part, GetChange(samples, 0, part, hn::Sub(get(0, 0, part, 2), next), along));
           if (y < counts[1])
           {
             const Vector beside = get(1, 0, part, 0);
@@ -87,7 +71,7 @@ private:
             if (y + 1 < counts[1])
             {
               yy.Raise(part,
-                GetChange<IsStretched>(
+                GetChange(
                   samples, 1, y, hn::Sub(get(2, 0, part, 0), beside), hn::Sub(beside, here)));
             }
           }
@@ -98,8 +82,7 @@ private:
             if (z + 1 < counts[2])
             {
               zz.Raise(part,
-                GetChange<IsStretched>(
-                  samples, 2, z, hn::Sub(get(0, 2, part, 0), above), hn::Sub(above, here)));
+                GetChange(samples, 2, z, hn::Sub(get(0, 2, part, 0), above), hn::Sub(above, here)));
             }
             if (y < counts[1])
             {
@@ -118,6 +101,7 @@ private:
       twice[2] + mixed[1] + mixed[2] });
   }
 
+private:
   /// The largest sizes so far.
   class Sizes
   {
