@@ -41,6 +41,7 @@ public:
   {
     this->World.Lights.emplace_back();
     this->World.Transport = CreateTransport(options, field);
+    this->World.Transport.MediumErrors = options.Errors;
   }
 
   void SetMedium(const std::shared_ptr<const rt::TransferFunction>& function, bool shade)
@@ -156,6 +157,11 @@ void MediumBenchmark::Options::AddTo(CLI::App& app)
     .add_option("--reference-steps", this->ReferenceSteps,
       "samples of these sums in a cell's edge. A peak of the opacity needs several samples where "
       "values change most")
+    ->capture_default_str()
+    ->check(CLI::PositiveNumber);
+  app
+    .add_option("--errors", this->Errors,
+      "how much larger errors may be than those of a still picture. While the camera moves: 16")
     ->capture_default_str()
     ->check(CLI::PositiveNumber);
   this->VolumeOptions::AddTo(app);

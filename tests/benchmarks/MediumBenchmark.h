@@ -22,6 +22,7 @@ public:
     std::string Shade = "both"; ///< on, off or both
     bool Reference = false;     ///< compares unshaded pictures with MediumReference
     int ReferenceSteps = 256;   ///< of a cell
+    double Errors = 1.0;        ///< rt::LightTransport::MediumErrors
 
     /// Adds the options that change this object.
     void AddTo(CLI::App& app);

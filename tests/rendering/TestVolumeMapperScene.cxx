@@ -22,6 +22,18 @@
 #include <thread>
 #include <vector>
 
+namespace
+{
+
+int CountTiles(vtkDSMScene* scene)
+{
+  vtkNew<vtkTable> table;
+  scene->GetStatistics()->GetTable(table);
+  return table->GetValueByName(0, "Tiles").ToInt();
+}
+
+} // namespace
+
 TEST_F(VolumeMapper, TheSceneIsTheRenderersAndEndsWithItsLastHolder)
 {
   EXPECT_EQ(vtkDSMScene::ForRenderer(this->Renderer), this->Scene);
@@ -138,22 +150,37 @@ TEST_F(VolumeMapper, LowersTheResolutionAtInteractiveRates)
 {
   this->Renderer->AddVolume(this->Volume);
   const int covered = CountCovered(this->RenderDistances());
-  const auto countTiles = [this]
-  {
-    vtkNew<vtkTable> table;
-    this->Scene->GetStatistics()->GetTable(table);
-    return table->GetValueByName(0, "Tiles").ToInt();
-  };
   constexpr int edge = 8; // of pixels, the largest
   this->Scene->SetInteractiveReduction(edge);
   EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
-  EXPECT_EQ(countTiles(), 13 * 13) << "a still picture is whole";
+  EXPECT_EQ(CountTiles(this->Scene), 13 * 13) << "a still picture is whole";
   this->Window->SetDesiredUpdateRate(15.0);
   EXPECT_NEAR(CountCovered(this->RenderDistances()), covered, 0.1 * covered);
-  EXPECT_EQ(countTiles(), 2 * 2);
+  EXPECT_EQ(CountTiles(this->Scene), 2 * 2);
   this->Window->SetDesiredUpdateRate(0.001);
   EXPECT_EQ(CountCovered(this->RenderDistances()), covered);
-  EXPECT_EQ(countTiles(), 13 * 13);
+  EXPECT_EQ(CountTiles(this->Scene), 13 * 13);
+}
+
+TEST_F(VolumeMapper, ShowsADraftOfWhatIsNew)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Scene->SetSamplesPerFrame(1);
+  this->Scene->SetShowsDrafts(true);
+  const int draft = CountCovered(this->RenderDistances());
+  EXPECT_EQ(CountTiles(this->Scene), 2 * 2) << "nobody knows how long it takes";
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 0);
+  EXPECT_FALSE(this->Scene->IsRefined());
+  const std::vector<double> whole = this->RenderDistances();
+  EXPECT_EQ(CountTiles(this->Scene), 13 * 13);
+  EXPECT_NEAR(CountCovered(whole), draft, 0.1 * draft);
+  EXPECT_TRUE(this->Scene->IsRefined());
+  this->Renderer->GetActiveCamera()->Azimuth(3.0);
+  this->RenderDistances();
+  EXPECT_EQ(CountTiles(this->Scene), 13 * 13) << "the last one was quick";
+  this->Renderer->GetActiveCamera()->Azimuth(-3.0);
+  this->Scene->SetSamplesPerFrame(0);
+  EXPECT_EQ(this->RenderDistances(), whole);
 }
 
 TEST_F(VolumeMapper, SharesTheLightOfOcclusionAtInteractiveRates)

@@ -321,6 +321,7 @@ void vtkPVDSMDelivery::Choose(
   const bool takesFew =
     report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
+  scene->SetShowsDrafts(report && !report->GetInteracting());
   scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
   // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how
   // coarse it is at least.

@@ -122,8 +122,9 @@ void FrameAccumulation::Restart()
 
 void FrameAccumulation::Postpone()
 {
+  const int wanted = std::max(this->Wanted, 1);
   this->Restart();
-  this->Wanted = 1;
+  this->Wanted = wanted;
 }
 
 int FrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const

@@ -21,10 +21,10 @@ void Add(ObjectDigest& digest, const Light& light)
 void Add(ObjectDigest& digest, const LightTransport& transport)
 {
   const auto& [shadows, twoSided, faintShadows, lightRadius, occlusionSamples, occlusionDistance,
-    surroundings, maxBounces, background] = transport;
+    surroundings, mediumErrors, maxBounces, background] = transport;
   const auto& [up, lower, upper] = surroundings;
   digest.AddAll(shadows, twoSided, faintShadows, lightRadius, occlusionSamples, occlusionDistance,
-    up, lower, upper, maxBounces, background);
+    up, lower, upper, mediumErrors, maxBounces, background);
 }
 
 } // namespace

@@ -27,6 +27,8 @@ struct LightTransport
   double AmbientOcclusionDistance = 0.0;
   /// Is occluded by what ambient occlusion's rays meet.
   Environment Surroundings;
+  /// How much larger errors of media may be than MediumTolerance says: more than 1 for pictures that are soon replaced.
+  double MediumErrors = 1.0;
   /// How often a ray may be mirrored.
   int MaxBounces = 1;
   /// Color of a mirrored ray that hits nothing.

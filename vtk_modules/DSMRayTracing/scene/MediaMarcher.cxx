@@ -107,6 +107,7 @@ void MergePieces(std::vector<MediumPiece>& pieces, int ray, MediumLight& light)
 MediaMarcher::MediaMarcher(const SceneTracers& tracers)
   : Media(tracers.Media)
   , FirstBeam(tracers.Objects.size())
+  , Errors(tracers.MediumErrors)
 {
   const auto any = [&](const auto& test)
   { return std::any_of(this->Media.begin(), this->Media.end(), test); };
@@ -151,6 +152,7 @@ void MediaMarcher::Gather(
 {
   light.Begin(rays, wanted);
   light.KeepsPieces = this->KeepsPieces;
+  light.ErrorFactor = 1.0 / this->Errors;
   light.Shading = this->Shading ? &*this->Shading : nullptr;
   for (std::size_t medium = 0; medium < this->Media.size(); ++medium)
   {
@@ -210,7 +212,7 @@ void MediaMarcher::Attenuate(const Ray* rays, RayMask wanted, glm::dvec3* transm
     }
     light->Begin(rays, wanted);
     light->KeepsPieces = group != 0 || medium->HasLateExtinction();
-    light->ErrorFactor = 1.0 / MediumTolerance::Shadow;
+    light->ErrorFactor = 1.0 / (MediumTolerance::Shadow * this->Errors);
     for (const auto& other : this->Media)
     {
       if (other == medium || (group != 0 && other->GetGroup() == group))

@@ -72,6 +72,7 @@ private:
 
   const MediumTracers& Media;
   std::size_t FirstBeam; ///< index in SceneBeam
+  double Errors;         ///< LightTransport::MediumErrors
   bool IsLit;            ///< true if light affects any medium
   bool KeepsPieces;
   std::optional<MediumShading> Shading;

@@ -34,6 +34,7 @@ template <class Store>
 SceneTracers CreateSceneTracers(Store& store, typename Store::Worker& worker, const Scene& scene)
 {
   SceneTracers tracers;
+  tracers.MediumErrors = scene.Transport.MediumErrors;
   for (std::size_t kind = 0; kind < std::variant_size_v<SceneObject>; ++kind)
   {
     for (std::size_t number = 0; number < scene.Objects.size(); ++number)

@@ -22,6 +22,7 @@ struct SceneTracers
 {
   ObjectTracers Objects;
   MediumTracers Media;
+  double MediumErrors = 1.0; ///< LightTransport
 
   /// Objects first: in the order of SceneBeam.
   std::vector<const BeamFinder*> GetBeamFinders() const

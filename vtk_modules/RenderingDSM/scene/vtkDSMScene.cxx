@@ -275,6 +275,16 @@ int vtkDSMScene::GetInteractiveReduction() const
   return this->Self->InteractiveReduction;
 }
 
+void vtkDSMScene::SetShowsDrafts(bool drafts)
+{
+  this->Self->ShowsDrafts = drafts;
+}
+
+bool vtkDSMScene::GetShowsDrafts() const
+{
+  return this->Self->ShowsDrafts;
+}
+
 void vtkDSMScene::SetAlwaysFinest(bool finest)
 {
   this->Self->AlwaysFinest = finest;

@@ -189,6 +189,16 @@ public:
 
   ///@{
   /**
+   * If a still picture of something new would take longer than about 0.2 s, a draft with up to 8 x 8 pixels in one
+   * is shown first, and further renders replace it, as long as IsRefined() is false. Has no effect unless
+   * SamplesPerFrame is positive. Off by default. Same value on every rank.
+   */
+  void SetShowsDrafts(bool drafts);
+  bool GetShowsDrafts() const;
+  ///@}
+
+  ///@{
+  /**
    * Traces every frame from the finest data, also while the window wants interactive rates and vtkDSMMemoryOptions
    * lets coarser ones stand in: for pictures that are kept. Off by default. Same value on every rank.
    */

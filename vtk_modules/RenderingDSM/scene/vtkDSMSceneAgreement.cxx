@@ -123,6 +123,7 @@ bool HasNewData(const std::vector<std::byte>& record, std::size_t dataset)
 struct vtkDSMScene::Internals::View
 {
   rt::FrameAccumulation::Offer Offer; ///< without what rank 0 decides: camera, background, lights
+  rt::Resolution::Shown Shown;
   glm::dmat4 WorldToClip;
   rt::Environment Background;
   std::int32_t IsApart; ///< something of its own may be between surfaces
@@ -231,7 +232,8 @@ void vtkDSMScene::Internals::Update(vtkDSMSceneMember& member, bool newData)
   member.TakeCoarser(this->Group, this->Group->GetOptions()->GetCoarserDataWhileMoving());
 }
 
-/// Puts what this rank shows into the tracer's words, without what rank 0 decides; see AgreeOnView.
+/// Puts what this rank shows into the tracer's words, without what rank 0 decides (see AgreeOnView). `request`: of
+/// edge 1.
 std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   rt::Scene& scene, rt::FrameRequest& request, vtkMatrix4x4* projection)
 {
@@ -259,14 +261,17 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
     request.Channels.Value |= rt::ChannelSet::Integral;
   }
   request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
-  request.PixelSize = this->GetReduction(request);
-  request.Width = (request.Width + request.PixelSize - 1) / request.PixelSize;
-  request.Height = (request.Height + request.PixelSize - 1) / request.PixelSize;
+  if (this->IsReduced() && !scene.Media.empty())
+  {
+    scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
+  }
 
   View view{};
   view.WorldToClip = std::exchange(request.WorldToClip, glm::dmat4(1.0));
-  view.Offer = this->Accumulation.CreateOffer(
-    this->Group->GetStore(), scene, request, this->Light->GetSamplesPerPixel(), this->GetPace());
+  const int edge = this->GetMovingEdge(request);
+  view.Offer = this->Accumulation.CreateOffer(this->Group->GetStore(), scene,
+    rt::Resolution::Reduce(request, edge), this->Light->GetSamplesPerPixel(), this->GetPace());
+  view.Shown = this->Shown;
   view.Background = this->Background;
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
   view.IsApart = canBeApart && !this->Image && !scene.IsOpaque() &&
@@ -466,13 +471,17 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
       this->TakeLights(records.front(), place + sizeof(View), scene);
       coarser = this->AgreeOnView(views, scene, request);
     });
-  if (isAny(&View::LimitsRays))
+  const auto limit = [&](rt::FrameRequest& reduced)
   {
-    this->LimitRays(request,
-      request.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), &rt::HasLayers));
-  }
+    if (isAny(&View::LimitsRays))
+    {
+      this->LimitRays(reduced,
+        reduced.Layers > 1 && std::any_of(scene.Media.begin(), scene.Media.end(), &rt::HasLayers));
+    }
+  };
   rt::Picture picture;
-  const auto result = this->TraceScene(scene, request, std::move(offers), coarser, picture);
+  const auto result = this->TraceScene(
+    scene, request, std::move(offers), views.front().Shown, coarser, limit, picture);
   if (result == rt::FrameAccumulation::Result::Aborted)
   {
     // The renderer goes on, with the last picture: other ranks may wait for what this one draws.

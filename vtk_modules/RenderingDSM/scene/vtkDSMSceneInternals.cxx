@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,10 +26,6 @@ namespace
 
 /// Frames per second; an application that wants as many from its window is moving the camera.
 constexpr double InteractiveRate = 1.0;
-
-/// Time limit of an interactive frame in seconds, and the largest reduction of its resolution.
-constexpr double InteractiveSeconds = 0.07;
-constexpr int LargestReduction = 8;
 
 /// A pixel's color and depth, in a picture without a window: as tiles, as the message with them, as the messages of all
 /// ranks, and as the picture or, later, the image.
@@ -75,6 +72,7 @@ void vtkDSMScene::Internals::GiveUpBlocks()
 {
   this->Members.GiveUpBlocks();
   this->Accumulation.Restart();
+  this->Shown.Content = 0;
 }
 
 std::uint64_t vtkDSMScene::Internals::GetOldestHidden() const
@@ -170,18 +168,41 @@ std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
   return Describe(outcome);
 }
 
-/// Collective: the scene's objects come in again where they are shown at another level of detail. `picture`: what
-/// this rank draws, as far as it needs no other ranks, when the frame was traced.
+/// Pictures to try, up to the first that is not abandoned. `request`: of edge 1.
+std::vector<vtkDSMScene::Internals::Try> vtkDSMScene::Internals::GetTries(
+  const rt::Resolution::Shown& shown, int coarser, std::uint64_t content,
+  const rt::FrameRequest& request) const
+{
+  std::vector<Try> tries;
+  if (this->DrawsDrafts())
+  {
+    for (const rt::Resolution::Try& picture : rt::Resolution::GetTries(shown, content, request))
+    {
+      tries.push_back({ 0, picture });
+    }
+    return tries;
+  }
+  const double unlimited = std::numeric_limits<double>::infinity();
+  for (const int level : this->Detail.GetTries(coarser))
+  {
+    tries.push_back({ level, { this->GetMovingEdge(request), unlimited } });
+  }
+  return tries;
+}
+
+/// Collective: the scene's objects come in again where they are shown at another level of detail. `request`: of edge
+/// 1; becomes that of the picture. `offers`: of the first try, if it is of the finest data, and no draft. `shown`: by
+/// rank 0. `coarser`: levels of detail that may stand in. `limit`: collective, ends the rays of a request (LimitRays).
+/// `picture`: what this rank draws, as far as it needs no other ranks, when the frame was traced.
 rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scene,
-  const rt::FrameRequest& request, Offers offers, int coarser, rt::Picture& picture)
+  rt::FrameRequest& request, Offers offers, const rt::Resolution::Shown& shown, int coarser,
+  const std::function<void(rt::FrameRequest&)>& limit, rt::Picture& picture)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   dsm::BlockStore& store = this->Group->GetStore();
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   const int wanted = this->Light->GetSamplesPerPixel();
   const rt::FrameAccumulation::Pace pace = this->GetPace();
-  std::vector<int> tries;
-  messenger.Insist([&] { tries = this->Detail.GetTries(coarser); });
   const auto report = [&](const rt::Frame& frame)
   {
     picture = this->Image ? rt::Picture() : this->Delivery.Assemble(frame);
@@ -192,28 +213,55 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
   const Raised tracing(TracingTiles);
   using Clock = std::chrono::steady_clock;
   auto told = Clock::now() + FirstTold;
-  for (auto level = tries.begin(); level != tries.end() && result == Result::Aborted; ++level)
+  rt::FrameRequest whole;
+  std::uint64_t content = 0;
+  std::vector<Try> tries;
+  messenger.Insist(
+    [&]
+    {
+      whole = request;
+      content = rt::Resolution::GetContent(scene, request);
+      tries = this->GetTries(shown, coarser, content, request);
+    });
+  for (auto next = tries.begin(); next != tries.end() && result == Result::Aborted; ++next)
   {
-    if (*level > 0)
+    const int edge = next->Picture.Edge;
+    const bool isDraft = this->DrawsDrafts() && edge > 1;
+    if (next == tries.begin() || edge != (next - 1)->Picture.Edge)
+    {
+      messenger.Insist([&] { request = rt::Resolution::Reduce(whole, edge); });
+      limit(request);
+    }
+    if (next->Coarser > 0 || isDraft)
     {
       offers = messenger.GatherValueTogether("Preparing the frame",
         [&]
         {
-          this->Members.AddTo(scene, *level);
+          if (next->Coarser > 0)
+          {
+            this->Members.AddTo(scene, next->Coarser);
+          }
+          request.IsPreview = request.IsPreview || isDraft;
+          scene.Transport.MediumErrors =
+            isDraft ? rt::Resolution::MediumErrors : scene.Transport.MediumErrors;
           return this->Accumulation.CreateOffer(store, scene, request, wanted, pace);
         });
     }
-    const bool isLast = level + 1 == tries.end();
+    const bool isLast = next + 1 == tries.end();
     this->Detail.Begin();
-    const auto watch = [this, window, isLast, &told](double part)
+    const auto start = Clock::now();
+    const auto watch = [this, window, isLast, &told, start, seconds = next->Picture.Seconds](
+                         double part)
     {
-      if (Clock::now() > told)
+      const auto now = Clock::now();
+      if (now > told)
       {
         this->TellOfTracing(part);
-        told = Clock::now() + ThenTold;
+        told = now + ThenTold;
       }
       return (window && window->CheckAbortStatus() != 0) ||
-        (!isLast && this->Detail.IsTooLong(this->Group->GetStore()));
+        std::chrono::duration<double>(now - start).count() > seconds ||
+        (!isLast && !this->DrawsDrafts() && this->Detail.IsTooLong(this->Group->GetStore()));
     };
     messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
     result = this->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store }, offers,
@@ -223,14 +271,24 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
       messenger.Insist(
         [&]
         {
-          this->Statistics->Take(this->Accumulation.GetFrame(), this->Accumulation.GetSamples(),
-            this->Accumulation.GetWanted(), *level);
+          this->Statistics->Take(this->Accumulation.GetFrame(),
+            isDraft ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
+            next->Coarser);
         });
-      if (tries.size() > 1)
+      if (!this->DrawsDrafts() && tries.size() > 1)
       {
-        this->Detail.Note(
-          *level, this->Statistics->GetNumberOfMisses(), this->Statistics->GetFrameSeconds());
+        this->Detail.Note(next->Coarser, this->Statistics->GetNumberOfMisses(),
+          this->Statistics->GetFrameSeconds());
       }
+    }
+    if (result != Result::Aborted)
+    {
+      this->Shown = { content, edge,
+        this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()) };
+    }
+    if (isDraft)
+    {
+      this->Accumulation.Postpone();
     }
   }
   this->Group->GetFrameRenderer().SetWatch({});
@@ -367,19 +425,23 @@ bool vtkDSMScene::Internals::IsInteractive() const
   return window && window->GetDesiredUpdateRate() >= InteractiveRate;
 }
 
-/// The edge of the squares of which one pixel is traced; the same on every rank.
-int vtkDSMScene::Internals::GetReduction(const rt::FrameRequest& request) const
+bool vtkDSMScene::Internals::IsReduced() const
 {
-  if (this->InteractiveReduction == 0 || !this->IsInteractive())
-  {
-    return 1;
-  }
-  const double pixels = static_cast<double>(request.Width) * request.Height;
-  const double seconds =
-    pixels * this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds());
-  const int least = this->InteractiveReduction;
-  return std::clamp(static_cast<int>(std::lround(std::sqrt(seconds / InteractiveSeconds))), least,
-    std::max(least, LargestReduction));
+  return this->InteractiveReduction > 0 && this->IsInteractive();
+}
+
+/// Returns the edge of a picture that is no draft. `request`: of edge 1.
+int vtkDSMScene::Internals::GetMovingEdge(const rt::FrameRequest& request) const
+{
+  return this->IsReduced() ? rt::Resolution::GetMovingEdge(
+                               request, this->Shown.SecondsPerPixel, this->InteractiveReduction)
+                           : 1;
+}
+
+/// Returns whether a still picture may be coarse, because others are to follow.
+bool vtkDSMScene::Internals::DrawsDrafts() const
+{
+  return this->ShowsDrafts && !this->Image && this->Pace.Samples > 0 && !this->IsInteractive();
 }
 
 rt::FrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
@@ -410,4 +472,5 @@ void vtkDSMScene::Internals::Clear()
   this->Prop->Clear();
   this->Statistics->Clear();
   this->Accumulation.Clear();
+  this->Shown = {};
 }

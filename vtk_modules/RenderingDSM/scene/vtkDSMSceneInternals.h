@@ -5,6 +5,7 @@
 #include "DSMCore/base/FirstFailure.h"
 #include "DSMRayTracing/frame/FrameAccumulation.h"
 #include "DSMRayTracing/frame/MovingDetail.h"
+#include "DSMRayTracing/frame/Resolution.h"
 #include "DSMVolumeFiles/cache/ReadAhead.h"
 #include "vtkDSMDepthReader.h"
 #include "vtkDSMFrameDelivery.h"
@@ -24,6 +25,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -96,6 +98,8 @@ public:
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
   rt::FrameAccumulation::Pace Pace; ///< pace of still images
   int InteractiveReduction = 0;
+  bool ShowsDrafts = false;
+  rt::Resolution::Shown Shown; ///< on every rank the same, but after a failure
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.
@@ -124,10 +128,21 @@ private:
   bool IsInteractive() const;
   rt::FrameAccumulation::Pace GetPace() const;
   bool HasNotes() const;
-  int GetReduction(const rt::FrameRequest& request) const;
+  bool IsReduced() const;
+  int GetMovingEdge(const rt::FrameRequest& request) const;
+  bool DrawsDrafts() const;
   int CountCoarser() const;
-  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, const rt::FrameRequest& request,
-    Offers offers, int coarser, rt::Picture& picture);
+  /// A picture to try: `Coarser` levels of detail below the finest.
+  struct Try
+  {
+    int Coarser;
+    rt::Resolution::Try Picture;
+  };
+  std::vector<Try> GetTries(const rt::Resolution::Shown& shown, int coarser, std::uint64_t content,
+    const rt::FrameRequest& request) const;
+  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, rt::FrameRequest& request,
+    Offers offers, const rt::Resolution::Shown& shown, int coarser,
+    const std::function<void(rt::FrameRequest&)>& limit, rt::Picture& picture);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);

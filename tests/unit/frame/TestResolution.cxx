@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/Resolution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace
+{
+
+/// A picture of a million pixels that takes so many seconds at edge 1.
+struct Costs
+{
+  double Seconds;
+  rt::FrameRequest Request;
+
+  explicit Costs(double seconds)
+    : Seconds(seconds)
+  {
+    this->Request.Width = 1000;
+    this->Request.Height = 1000;
+  }
+  rt::Resolution::Shown Show(std::uint64_t content, int edge) const
+  {
+    return { content, edge, 1e-6 * this->Seconds };
+  }
+  std::vector<int> TryAfter(const rt::Resolution::Shown& shown, std::uint64_t content) const
+  {
+    std::vector<int> edges;
+    for (const auto& next : rt::Resolution::GetTries(shown, content, this->Request))
+    {
+      edges.push_back(next.Edge);
+    }
+    return edges;
+  }
+};
+
+using Edges = std::vector<int>;
+
+TEST(Resolution, DrawsDraftsOfWhatIsNewAndSlow)
+{
+  EXPECT_EQ(Costs(0.0).TryAfter({}, 1), Edges({ 8 })) << "nothing is known";
+  EXPECT_EQ(Costs(0.15).TryAfter(Costs(0.15).Show(1, 1), 2), Edges({ 1, 8 }));
+  EXPECT_EQ(Costs(0.35).TryAfter(Costs(0.35).Show(1, 1), 2), Edges({ 2, 8 }));
+  EXPECT_EQ(Costs(1.5).TryAfter(Costs(1.5).Show(1, 1), 2), Edges({ 4, 8 }));
+  EXPECT_EQ(Costs(20.0).TryAfter(Costs(20.0).Show(1, 1), 2), Edges({ 8 }));
+  const Costs quick(0.15);
+  const auto tries = rt::Resolution::GetTries(quick.Show(1, 1), 2, quick.Request);
+  EXPECT_LT(tries.front().Seconds, 0.5) << "what is new may be slower than what was shown";
+  EXPECT_TRUE(std::isinf(tries.back().Seconds));
+}
+
+TEST(Resolution, RefinesWhatIsShown)
+{
+  EXPECT_EQ(Costs(1.0).TryAfter(Costs(1.0).Show(1, 8), 1), Edges({ 1 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 8), 1), Edges({ 4 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 3), 1), Edges({ 1 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 4), 1), Edges({ 2 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 2), 1), Edges({ 1 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 1), 1), Edges({ 1 }));
+}
+
+TEST(Resolution, FollowsTheTimeWhileTheCameraMoves)
+{
+  const auto find = [](double seconds, int least)
+  { return rt::Resolution::GetMovingEdge(Costs(seconds).Request, 1e-6 * seconds, least); };
+  EXPECT_EQ(find(0.05, 1), 1);
+  EXPECT_EQ(find(0.05, 3), 3);
+  EXPECT_EQ(find(0.3, 1), 2);
+  EXPECT_EQ(find(30.0, 1), 8);
+}
+
+TEST(Resolution, KnowsTheContentAtRestAndInMotion)
+{
+  rt::Scene scene;
+  const rt::FrameRequest request = Costs(1.0).Request;
+  const std::uint64_t content = rt::Resolution::GetContent(scene, request);
+  scene.Transport.FaintShadows = true;
+  scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
+  EXPECT_EQ(rt::Resolution::GetContent(scene, request), content);
+  EXPECT_TRUE(scene.Transport.FaintShadows);
+  EXPECT_EQ(scene.Transport.MediumErrors, rt::Resolution::MediumErrors);
+  scene.Transport.Shadows = true;
+  EXPECT_NE(rt::Resolution::GetContent(scene, request), content);
+  const rt::FrameRequest reduced = rt::Resolution::Reduce(request, 3);
+  EXPECT_EQ(std::pair(reduced.Width, reduced.Height), std::pair(334, 334));
+  EXPECT_EQ(reduced.PixelSize, 3);
+}
+
+} // namespace

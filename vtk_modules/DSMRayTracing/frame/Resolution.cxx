@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/Resolution.h"
+
+#include "DSMRayTracing/frame/SceneDigest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rt
+{
+
+namespace
+{
+
+constexpr double MovingSeconds = 0.07;
+/// A picture that takes longer has a draft before it.
+constexpr double SoonSeconds = 0.2;
+constexpr double DraftSeconds = 0.1;
+/// Between a draft and a picture that takes longer, there are further drafts.
+constexpr double LongSeconds = 2.0;
+
+constexpr double Unlimited = std::numeric_limits<double>::infinity();
+
+double CountPixels(const FrameRequest& request)
+{
+  return static_cast<double>(request.Width) * request.Height;
+}
+
+} // namespace
+
+std::uint64_t Resolution::GetContent(Scene& scene, const FrameRequest& request)
+{
+  LightTransport& transport = scene.Transport;
+  const bool faintShadows = std::exchange(transport.FaintShadows, false);
+  const double mediumErrors = std::exchange(transport.MediumErrors, 1.0);
+  const std::uint64_t content = GetSceneDigest(scene, request);
+  transport.FaintShadows = faintShadows;
+  transport.MediumErrors = mediumErrors;
+  return content;
+}
+
+int Resolution::GetMovingEdge(const FrameRequest& request, double secondsPerPixel, int least)
+{
+  const double edge = std::sqrt(CountPixels(request) * secondsPerPixel / MovingSeconds);
+  return std::clamp(static_cast<int>(std::lround(edge)), least, std::max(least, CoarsestEdge));
+}
+
+std::vector<Resolution::Try> Resolution::GetTries(
+  const Shown& shown, std::uint64_t content, const FrameRequest& request)
+{
+  const double seconds = CountPixels(request) * shown.SecondsPerPixel;
+  if (content == shown.Content)
+  {
+    const bool isNext = shown.Edge <= 2 || seconds <= LongSeconds;
+    return { { isNext ? 1 : static_cast<int>(shown.Edge) / 2, Unlimited } };
+  }
+  int edge = CoarsestEdge;
+  if (seconds > 0.0)
+  {
+    edge = seconds <= SoonSeconds ? 1 : 2;
+    while (edge > 1 && edge < CoarsestEdge && seconds > DraftSeconds * edge * edge)
+    {
+      edge *= 2;
+    }
+  }
+  std::vector<Try> tries;
+  if (edge < CoarsestEdge)
+  {
+    tries.push_back({ edge, SoonSeconds }); // what is new may take longer than what was shown
+  }
+  tries.push_back({ CoarsestEdge, Unlimited });
+  return tries;
+}
+
+FrameRequest Resolution::Reduce(const FrameRequest& request, int edge)
+{
+  FrameRequest reduced = request;
+  reduced.PixelSize = edge;
+  reduced.Width = (request.Width + edge - 1) / edge;
+  reduced.Height = (request.Height + edge - 1) / edge;
+  return reduced;
+}
+
+} // namespace rt
