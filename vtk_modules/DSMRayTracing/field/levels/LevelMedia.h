@@ -38,7 +38,10 @@ public:
     all.Begin(rays, wanted);
     all.SetSpace(rays, wanted, light.WorldToSpace);
     all.KeepsPieces = true;
-    all.DarkBelow = 0.0;
+    all.ErrorFactor = light.ErrorFactor;
+    all.IsExact = light.IsExact;
+    all.DarkBelow = light.DarkBelow;
+    all.HasLateExtinction = light.HasLateExtinction;
     // Pieces are joined when they are in order.
     ForEachRay(
       wanted, [&](int ray) { all.FirstPiece[ray] = std::numeric_limits<std::size_t>::max(); });
@@ -95,8 +98,10 @@ private:
           }
           const int level = lattice.GetBrick(bricks.Bricks[place].Id).Level;
           all.JoinedLength = light.JoinedLength * scales.GetSize(level) / finest;
-          // Bricks may come in any order: what is before this one is not known.
+          // All that has been taken is before this brick. More may be, in bricks that begin behind it.
           all.ClearSums(visits[place].Meets);
+          ForEachRay(visits[place].Meets,
+            [&](int ray) { all.Transmittance[ray] = light.Transmittance[ray]; });
           RayMask none;
           const RayMask meets = this->template MarchBrick<decltype(sample)>(
             field, function, bricks, place, packets, open, all, none);
