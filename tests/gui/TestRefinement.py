@@ -172,15 +172,17 @@ class Watch:
             return
 
         def time_render():
+            """Of a whole picture: what is rendered first may be a draft."""
             self.display.DSMIsoValues = [self.display.DSMIsoValues[0] + 0.01]
             start = time.monotonic()
-            simple.Render(self.view)
+            simple.SaveScreenshot(PICTURE + ".whole.png", self.view)
             return time.monotonic() - start
 
-        self.display.DSMSamplesPerPixel = self.wanted = 64
+        self.display.DSMSamplesPerPixel = 1
         while (whole := time_render()) < 3.0:
             check(self.display.DSMAmbientOcclusionSamples < MOST_RAYS, f"a frame takes time: {whole:.2f} s")
             self.display.DSMAmbientOcclusionSamples *= 4
+        self.display.DSMSamplesPerPixel = self.wanted = 64
         shown = grab(self.view)
         heard = []
         interactor = self.view.GetInteractor()
