@@ -14,7 +14,8 @@ import xml.etree.ElementTree as ElementTree
 
 PAGE, PROJECT, OUTPUT, *DEFINITIONS = (pathlib.Path(path) for path in sys.argv[1:])
 SHARED = ("BlendMode", "ScalarOpacityUnitDistance", "InterpolationType", "Shade", "VolumeAnisotropy",
-          "UseSeparateOpacityArray", "OpacityArrayName", "OpacityComponent", "IsosurfaceValues")  # of ParaView's Volume
+          "UseSeparateOpacityArray", "OpacityArrayName", "OpacityComponent", "IsosurfaceValues", "UseTransfer2D",
+          "UseGradientForTransfer2D", "ColorArray2Name", "ColorArray2Component")  # of ParaView's Volume
 # The table of a property is the first whose pattern matches its proxy and name. Rows are in the order of definitions.
 TABLES = {
     "clipping": r".*:DSM(Clip|Crop|Cap)\w*",

@@ -56,17 +56,17 @@ check(get_covered(chosen).mean() > 0.1, "the first look shows something")
 display.ScalarOpacityUnitDistance = 1.7
 compare("FirstLook")
 
-# As Volume, which shows nothing without an array; here with a message. So have two-dimensional functions.
+# As Volume, which shows nothing without an array, or without a box of a two-dimensional function; here with a message.
 expected = show_as("DSM Volume")
 for name, value, before, text in (("ColorArrayName", [None, ""], ["POINTS", "waves"], "No array colors"),
-                                  ("UseTransfer2D", 1, 0, "two-dimensional")):
+                                  ("UseTransfer2D", 1, 0, "has no box")):
     for times in (1, 0):
         with Messages() as messages:
             setattr(display, name, value)
-            ignored = render(view)
+            nothing = render(view)
         check(get_ranks() > 1 or messages.text.count(text) == times, f"{name} is reported {times} times")
     setattr(display, name, before)
-    check(get_covered(ignored).any() == (name == "UseTransfer2D"), f"{name}: what is seen")
+    check(not get_covered(nothing).any(), f"{name}: nothing is seen")
 check_equal(render(view), expected, "an array colors it again", tolerance=0)
 
 opacity = simple.GetOpacityTransferFunction("waves")
@@ -135,6 +135,21 @@ display.UseSeparateOpacityArray = 0
 once = render(view)
 check(abs(once - twice).mean() < 0.1, f"the same array twice is once: {abs(once - twice).mean():.3f}")
 check(abs(once - far)[get_covered(once)].mean() > 5.0, "another array for opacity is another picture")
+
+# A function of the value and of the gradient, or of another array. Volume applies an opacity at each sample: twice a cell.
+unit_distance = display.ScalarOpacityUnitDistance
+display.ScalarOpacityUnitDistance, display.UseTransfer2D = 0.5, 1
+boxes = simple.GetTransferFunction2D("waves")
+boxes.OutputDimensions, boxes.Range = [32, 32], [-1.0, 1.0, 0.0, 1.0]
+boxes.Boxes = [-0.4, 0.5, 0.6, 0.5, 1.0, 0.3, 0.1, 0.2, 0.2, 0.1, 0.8, 0.7, 0.1, 0.4, 1.0, 0.1]
+compare("GradientBoxes", mean=1.5, largest=80)
+of_gradients = render(view)
+check(get_covered(of_gradients).any(), "the boxes show something")
+display.UseGradientForTransfer2D, display.ColorArray2Name = 0, ["POINTS", "ways"]
+compare("ArrayBoxes", mean=1.5, largest=80)
+check(abs(of_gradients - render(view)).mean() > 2.0, "another array is another picture")
+display.UseTransfer2D, display.UseGradientForTransfer2D, display.ScalarOpacityUnitDistance = 0, 1, unit_distance
+check_equal(render(view), once, "one-dimensional functions show what they showed", tolerance=0)
 
 # As the color map's editor sets it: a logarithmic map of values from 0 on, and colors beyond the range.
 simple.ColorBy(display, ("POINTS", "ways"))

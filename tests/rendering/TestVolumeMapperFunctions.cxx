@@ -7,6 +7,7 @@
 #include "vtkGPUVolumeRayCastMapper.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
+#include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
@@ -381,6 +382,151 @@ TEST_F(VolumeMapperOfLabels, FacesOfCutsShowThem)
   }
   EXPECT_EQ(FindMost(pixels, 0), 255.0);
   EXPECT_EQ(FindMost(pixels, 2), 255.0);
+}
+
+/// A function of the value and of a second number, beside VTK's mapper, which applies an opacity to each sample.
+class VolumeMapperOfFunctions2D : public VolumeMapper
+{
+protected:
+  static constexpr double Step = 0.1;
+
+  VolumeMapperOfFunctions2D()
+  {
+    vtkDataArray* const values = this->Image->GetPointData()->GetScalars();
+    vtkNew<vtkFloatArray> seconds;
+    seconds->SetName("second");
+    for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+    {
+      const double* const p = this->Image->GetPoint(point);
+      const double wave = 0.7 + 0.3 * std::sin(0.4 * p[0]) * std::cos(0.5 * p[1] + 0.3 * p[2]);
+      const double inside = std::max(0.0, 1.0 - 2.1 * values->GetTuple1(point));
+      values->SetTuple1(point, 200.0 * wave * inside - 30.0);
+      seconds->InsertNextValue(
+        static_cast<float>(3.0 + std::sin(0.3 * p[0] + 0.2 * p[1]) + 0.1 * p[2]));
+    }
+    this->Image->GetPointData()->AddArray(seconds);
+    this->Function->SetDimensions(40, 24, 1);
+    this->Function->AllocateScalars(VTK_FLOAT, 4);
+    // No mapper looks at these.
+    this->Function->SetOrigin(-7.0, 9.0, 0.0);
+    this->Function->SetSpacing(11.0, 0.1, 1.0);
+    this->Fill(0.03);
+    this->Property->SetInterpolationTypeToLinear();
+    this->Property->SetTransferFunction2D(this->Function);
+    this->Property->SetTransferFunctionModeTo2D();
+    this->Property->SetScalarOpacityUnitDistance(Step);
+    this->Volume->SetProperty(this->Property);
+    this->Place();
+    this->Renderer->AddVolume(this->Volume);
+    this->Mapper->SetNumberOfIsoValues(0);
+    this->Mapper->SetIsoArray("");
+  }
+  ~VolumeMapperOfFunctions2D() override { this->Volume->SetMapper(this->Mapper); }
+
+  /// A red box of a few texels, and green that grows with the second number.
+  void Fill(double opacity)
+  {
+    for (int row = 0; row < 24; ++row)
+    {
+      for (int column = 0; column < 40; ++column)
+      {
+        const bool isBox = column > 10 && column < 18 && row > 2 && row < 12;
+        const bool isRest = column > 21;
+        const double look[4] = { isBox ? 1.0 : 0.0, isRest ? 0.9 : 0.0, isRest ? row / 30.0 : 0.2,
+          isBox      ? opacity
+            : isRest ? opacity * row / 24.0
+                     : 0.0 };
+        for (int channel = 0; channel < 4; ++channel)
+        {
+          this->Function->SetScalarComponentFromDouble(column, row, 0, channel, look[channel]);
+        }
+      }
+    }
+    this->Function->Modified();
+  }
+
+  vtkSmartPointer<vtkUnsignedCharArray> DrawIt(vtkVolumeMapper* mapper)
+  {
+    mapper->SetInputDataObject(this->Image);
+    this->Volume->SetMapper(mapper);
+    this->Window->Render();
+    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
+    return pixels;
+  }
+  vtkSmartPointer<vtkUnsignedCharArray> DrawTheirs(const char* second)
+  {
+    vtkNew<vtkGPUVolumeRayCastMapper> theirs;
+    theirs->SetAutoAdjustSampleDistances(0);
+    theirs->SetSampleDistance(Step);
+    theirs->SetTransfer2DYAxisArray(second);
+    return this->DrawIt(theirs);
+  }
+  vtkSmartPointer<vtkUnsignedCharArray> DrawOurs(const char* second)
+  {
+    this->Mapper->SetTransfer2DYAxisArray(second);
+    return this->DrawIt(this->Mapper);
+  }
+
+  vtkSmartPointer<vtkImageData> Image = MakeBall();
+  vtkNew<vtkImageData> Function;
+  vtkNew<vtkVolumeProperty> Property;
+};
+
+TEST_F(VolumeMapperOfFunctions2D, AreThoseOfTheRayCastMapper)
+{
+  vtkSmartPointer<vtkUnsignedCharArray> before;
+  for (const char* const second : { static_cast<const char*>(nullptr), "second" })
+  {
+    const auto ours = this->DrawOurs(second);
+    EXPECT_GT(ours->GetRange(0)[1], 100.0) << "the red box is seen";
+    EXPECT_GT(ours->GetRange(1)[1], 100.0) << "green is seen";
+    // VTK takes differences over 33 / 32 of a cell for those over a cell.
+    EXPECT_LT(GetDifference(ours, this->DrawTheirs(second)), second ? 1.0 : 2.0);
+    this->Property->ShadeOn();
+    const auto shaded = this->DrawOurs(second);
+    EXPECT_GT(GetDifference(shaded, ours), 2.0);
+    EXPECT_LT(GetDifference(shaded, this->DrawTheirs(second)), 1.5)
+      << (second ? second : "gradient");
+    this->Property->ShadeOff();
+    EXPECT_TRUE(!before || GetDifference(before, ours) > 2.0);
+    before = ours;
+  }
+  // The same image with other texels.
+  this->Fill(0.1);
+  const auto denser = this->DrawOurs("second");
+  EXPECT_GT(GetDifference(denser, before), 5.0);
+  EXPECT_LT(GetDifference(denser, this->DrawTheirs("second")), 1.0);
+  // Samples that are not interpolated have texels that are not.
+  this->Property->SetInterpolationTypeToNearest();
+  EXPECT_LT(GetDifference(this->DrawOurs("second"), this->DrawTheirs("second")), 2.0);
+}
+
+TEST_F(VolumeMapperOfFunctions2D, GiveWayToOthersWithAWarning)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  this->Mapper->AddObserver(vtkCommand::WarningEvent, observer);
+  const auto expected = this->DrawOurs(nullptr);
+  EXPECT_FALSE(observer->GetWarning()) << observer->GetWarningMessage();
+  this->Mapper->SetOpacityArray("second");
+  EXPECT_EQ(GetDifference(this->DrawOurs(nullptr), expected), 0.0);
+  EXPECT_NE(observer->GetWarningMessage().find("opacities from another array"), std::string::npos);
+  this->Mapper->SetOpacityArray("");
+  // As VTK's mapper, which takes gradients where an array is missing.
+  EXPECT_EQ(GetDifference(this->DrawOurs("none"), expected), 0.0);
+  EXPECT_NE(observer->GetWarningMessage().find("none"), std::string::npos);
+  observer->Clear();
+  this->Mapper->SetBlendModeToMaximumIntensity();
+  this->DrawOurs(nullptr);
+  EXPECT_NE(observer->GetWarningMessage().find("two-dimensional"), std::string::npos);
+  this->Mapper->SetBlendModeToComposite();
+  this->Property->SetTransferFunction2D(nullptr);
+  vtkNew<vtkVolumeProperty> other;
+  other->SetTransferFunctionModeTo2D();
+  this->Volume->SetProperty(other);
+  observer->Clear();
+  this->DrawOurs(nullptr);
+  EXPECT_NE(observer->GetWarningMessage().find("SetTransferFunction2D"), std::string::npos);
 }
 
 } // namespace

@@ -560,10 +560,6 @@ TEST_F(VolumeMapper, SaysWhatMediaDoNotHave)
   this->Window->Render();
   EXPECT_NE(observer->GetWarningMessage().find("ComputeNormalFromOpacityOff"), std::string::npos);
   this->Mapper->ComputeNormalFromOpacityOff();
-  this->Volume->GetProperty()->SetTransferFunctionModeTo2D();
-  this->Window->Render();
-  EXPECT_NE(observer->GetWarningMessage().find("two-dimensional"), std::string::npos);
-  this->Volume->GetProperty()->SetTransferFunctionModeTo1D();
   this->Mapper->SetOpacityArray("distance");
   this->Mapper->SetBlendMode(vtkVolumeMapper::ADDITIVE_BLEND);
   observer->Clear();

@@ -9,6 +9,7 @@
 #include "vtkContourValues.h"
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVTransferFunction2D.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkProperty.h"
 #include "vtkVolume.h"
@@ -168,4 +169,40 @@ void vtkPVDSMVolumeRepresentation::SelectOpacityArrayComponent(int component)
 void vtkPVDSMVolumeRepresentation::UpdateOpacityArray()
 {
   this->VolumeMapper->SetOpacityArray(this->UseSeparateOpacityArray ? this->OpacityArray : "");
+}
+
+void vtkPVDSMVolumeRepresentation::SetUseTransfer2D(bool use)
+{
+  this->VolumeProperty->SetTransferFunctionMode(
+    use ? vtkVolumeProperty::TF_2D : vtkVolumeProperty::TF_1D);
+}
+
+/// The function has one image, which it fills again when its boxes change.
+void vtkPVDSMVolumeRepresentation::SetTransferFunction2D(vtkPVTransferFunction2D* function)
+{
+  this->TransferFunction2D = function;
+  this->VolumeProperty->SetTransferFunction2D(function ? function->GetFunction() : nullptr);
+}
+
+void vtkPVDSMVolumeRepresentation::SetUseGradientForTransfer2D(bool use)
+{
+  this->UseGradientForTransfer2D = use;
+  this->UpdateSecondArray();
+}
+
+void vtkPVDSMVolumeRepresentation::SelectColorArray2(int, int, int, int, const char* name)
+{
+  this->SecondArray = name ? name : "";
+  this->UpdateSecondArray();
+}
+
+void vtkPVDSMVolumeRepresentation::SelectColorArray2Component(int component)
+{
+  this->VolumeMapper->SetTransfer2DYAxisComponent(component);
+}
+
+void vtkPVDSMVolumeRepresentation::UpdateSecondArray()
+{
+  this->VolumeMapper->SetTransfer2DYAxisArray(
+    this->UseGradientForTransfer2D ? nullptr : this->SecondArray.c_str());
 }

@@ -12,9 +12,11 @@
 #include "vtkNew.h" // for ivars
 #include "vtkPVDSMImageRepresentation.h"
 #include "vtkRepresentationsDSMModule.h" // for the export macro
+#include "vtkSmartPointer.h"             // for ivars
 
 #include <string> // for ivars
 
+class vtkPVTransferFunction2D;
 class vtkPiecewiseFunction;
 class vtkVolumeProperty;
 
@@ -62,6 +64,18 @@ public:
   void SelectOpacityArrayComponent(int component);
   ///@}
 
+  ///@{
+  /**
+   * A function of the values and of a second number, in place of the color and opacity functions, if it is used. The
+   * second number is the length of the gradient, or a value of another array of points.
+   */
+  void SetUseTransfer2D(bool use);
+  void SetTransferFunction2D(vtkPVTransferFunction2D* function);
+  void SetUseGradientForTransfer2D(bool use);
+  void SelectColorArray2(int index, int port, int connection, int association, const char* name);
+  void SelectColorArray2Component(int component);
+  ///@}
+
   /**
    * One of vtkVolumeMapper's blend modes, but Slice, or vtkDSMVolumeMapper::INTEGRAL_BLEND.
    */
@@ -94,12 +108,16 @@ private:
   void operator=(const vtkPVDSMVolumeRepresentation&) = delete;
 
   void UpdateOpacityArray();
+  void UpdateSecondArray();
   double GetScatteredPart() const;
 
   vtkNew<vtkVolumeProperty> VolumeProperty;
   double Scattering = 0.0;
   bool UseSeparateOpacityArray = false;
   std::string OpacityArray;
+  vtkSmartPointer<vtkPVTransferFunction2D> TransferFunction2D;
+  bool UseGradientForTransfer2D = true;
+  std::string SecondArray;
   bool MultiComponentsMapping = false;
 };
 

@@ -179,10 +179,13 @@ void vtkSMDSMVolumeRepresentationProxy::ReportIgnored(vtkSMPVRepresentationProxy
   }
   else if (vtkSMPropertyHelper(display, "UseTransfer2D", true).GetAsInt() != 0)
   {
-    text =
-      "DSM Volume ignores the two-dimensional transfer function and uses the opacity function. "
-      "Turn off Edit 2D Transfer Function in the Color Map Editor, or choose the "
-      "representation Volume.";
+    vtkSMProxy* const function =
+      vtkSMPropertyHelper(display, "TransferFunction2D", true).GetAsProxy();
+    if (!function || vtkSMPropertyHelper(function, "Boxes", true).GetNumberOfElements() == 0)
+    {
+      text = "The two-dimensional transfer function has no box, so nothing is drawn. Add a box in "
+             "the Color Map Editor, or turn off Use 2D Transfer Function.";
+    }
   }
   if (!text.empty() && text != this->Reported)
   {

@@ -97,7 +97,8 @@ std::vector<FunctionSample> ToSamples(
 
 } // namespace
 
-TransferFunction::TransferFunction(const std::vector<FunctionSample>& samples, double cellLength)
+TransferFunction::TransferFunction(const std::vector<FunctionSample>& samples, double cellLength,
+  const std::vector<std::vector<glm::dvec4>>& others)
   : Origin(FindOrigin(samples))
   , Scale(Bins / (samples.back().Value - samples.front().Value))
   , Begin(Round(this->GetPlace(samples.front().Value)))
@@ -117,7 +118,15 @@ TransferFunction::TransferFunction(const std::vector<FunctionSample>& samples, d
     { this->Begin, this->Begin, Lanes(0.0), start, Lanes(0.0), start[3], 0.0, { start[3] } });
   for (std::size_t sample = 1; sample < samples.size(); ++sample)
   {
+    const std::size_t before = this->Parts.size();
     this->AddPart(samples[sample - 1], samples[sample], cellLength);
+    for (std::size_t other = 0; this->Parts.size() > before && other < others.size(); ++other)
+    {
+      Part& part = this->Parts.back();
+      part.Steepness = GetLarger(part.Steepness,
+        GetSteepness(
+          others[other][sample - 1], others[other][sample], part.End - part.Begin, cellLength));
+    }
   }
   const Lanes end = ToLanes(ToEmission(samples.back().Look));
   const Part& last = this->Parts.back();
@@ -156,15 +165,22 @@ void TransferFunction::AddPart(
   const double beforeWidth = before.End - before.Begin;
   const Lanes integral =
     before.Integral + (before.Look + Lanes(0.5 * beforeWidth) * before.Growth) * Lanes(beforeWidth);
-  const double change = GetLargest(glm::abs(GetSeen(other, cellLength) - GetSeen(one, cellLength)));
   const glm::dvec4 beforeEnd = ToVector(before.Look + Lanes(beforeWidth) * before.Growth);
   const double jump =
     GetLargest(glm::abs(GetSeen(one, cellLength) - GetSeen(beforeEnd, cellLength)));
   this->Brightest = std::max({ this->Brightest, GetLargest(glm::dvec4(glm::dvec3(one), 0.0)),
     GetLargest(glm::dvec4(glm::dvec3(other), 0.0)) });
-  this->Parts.push_back(
-    { first, last, integral, ToLanes(one), ToLanes((other - one) / width), end.Look.w, jump,
-      { std::max(one.w, other.w), change / width, GetTinge(begin.Look, end.Look) / width } });
+  this->Parts.push_back({ first, last, integral, ToLanes(one), ToLanes((other - one) / width),
+    end.Look.w, jump, GetSteepness(begin.Look, end.Look, width, cellLength) });
+}
+
+TransferFunction::Behavior TransferFunction::GetSteepness(
+  const glm::dvec4& begin, const glm::dvec4& end, double width, double cellLength)
+{
+  const glm::dvec4 change =
+    GetSeen(ToEmission(end), cellLength) - GetSeen(ToEmission(begin), cellLength);
+  return { std::max(begin.w, end.w), GetLargest(glm::abs(change)) / width,
+    GetTinge(begin, end) / width };
 }
 
 void TransferFunction::SetBins()

@@ -33,7 +33,9 @@ public:
   /// `samples`: ascending, at least two, the function's range from the first to the last of them. Two of the same
   /// value are a jump. Their looks are red, green, blue (straight), and extinction (w): optical depth in a unit of
   /// length. `cellLength`: of two extinctions with which a cell is opaque, one is as good as the other.
-  explicit TransferFunction(const std::vector<FunctionSample>& samples, double cellLength = 0.0);
+  /// `others`: looks of other functions at the same values, whose Behavior counts, too.
+  explicit TransferFunction(const std::vector<FunctionSample>& samples, double cellLength = 0.0,
+    const std::vector<std::vector<glm::dvec4>>& others = {});
   /// The same of even samples from `first` to `last`, which is greater.
   TransferFunction(double first, double last, const std::vector<glm::dvec4>& samples);
 
@@ -112,6 +114,9 @@ private:
   };
 
   void AddPart(const FunctionSample& begin, const FunctionSample& end, double cellLength);
+  /// How steep a part is that is `width` wide and has such looks at its ends.
+  static Behavior GetSteepness(
+    const glm::dvec4& begin, const glm::dvec4& end, double width, double cellLength);
   void SetBins();
   void SetTable();
   /// The last part that begins at or before a place; that of a place that is not a number is part 0.

@@ -37,6 +37,9 @@ struct MediumPiece
   /// Unit, in world space, against the gradient of the values; 0: there is none.
   glm::dvec3 Normal{ 0.0 };
   int Group = 0; ///< MediumTracer::GetGroup
+  /// The values at its begin, in the middle and at its end, in places of the medium's function, if the march keeps
+  /// them (MediumLight::KeepsValues).
+  float Values[3] = {};
 
   double GetMiddle() const { return 0.5 * (this->Begin + this->End); }
 };
@@ -113,7 +116,7 @@ public:
       this->Last[ray] = piece.End;
       if (this->KeepsPieces)
       {
-        this->Keep(ray, piece.Begin, piece.End, piece.Amount, passed);
+        this->Keep(ray, piece, passed);
       }
       this->Locate(ray, piece.Begin, piece.End, passed);
       this->Blend(
@@ -124,22 +127,23 @@ public:
   ///@{
   /// The parts of Add, for callers that have the transmittance of a piece already, and the share of its emission
   /// that leaves it.
-  void Keep(int ray, double begin, double end, const Lanes& amount, double passed)
+  void Keep(int ray, const MediumPiece& piece, double passed)
   {
     std::vector<MediumPiece>& pieces = this->Pieces[ray];
     const double share =
       (this->HasLateExtinction ? 1.0 : this->Transmittance[ray]) * (1.0 - passed);
-    if (pieces.size() > this->FirstPiece[ray] &&
-      this->IsJoined(ray, pieces.back(), end, amount, share) &&
-      begin <= pieces.back().End + 1e-6 * (end - begin))
+    if (!this->KeepsValues && pieces.size() > this->FirstPiece[ray] &&
+      this->IsJoined(ray, pieces.back(), piece.End, piece.Amount, share) &&
+      piece.Begin <= pieces.back().End + 1e-6 * (piece.End - piece.Begin))
     {
       MediumPiece& last = pieces.back();
-      last.End = end;
-      last.Amount = last.Amount + amount;
+      last.End = piece.End;
+      last.Amount = last.Amount + piece.Amount;
       last.Share += share;
       return;
     }
-    pieces.push_back({ begin, end, amount, share });
+    pieces.push_back(piece);
+    pieces.back().Share = share;
   }
   void Blend(int ray, const Lanes& amount, double passed, double seen)
   {
@@ -194,6 +198,8 @@ public:
   double JoinedLength = 0.0;
   /// MediumTracer::HasLateExtinction of the current medium.
   bool HasLateExtinction = false;
+  /// True if pieces keep the values of the current medium. Then none are joined.
+  bool KeepsValues = false;
   /// Errors that are as small as MediumTolerance says when they are multiplied by this: 1 for what a pixel shows.
   double ErrorFactor = 1.0;
   /// Null: pieces are not shaded while rays march, or later.

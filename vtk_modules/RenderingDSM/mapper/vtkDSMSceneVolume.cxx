@@ -325,9 +325,10 @@ void vtkDSMSceneVolume::Update(const std::shared_ptr<vtkDSMRankGroup>& group, bo
                                              : "slice array";
   for (const vtkDSMVolumeData::Choice& choice : this->GetShown())
   {
-    const bool isOfColors = !this->Arrays.empty() && !this->HasSeveralMedia();
-    this->Arrays.push_back(
-      this->Require(choice, isOfColors ? "color array" : purpose, group->GetRetryVersion(), known));
+    const char* const own = this->Arrays.empty() || this->HasSeveralMedia() ? purpose
+      : this->HasSecondArray() ? "Y-axis array of the two-dimensional transfer function"
+                               : "color array";
+    this->Arrays.push_back(this->Require(choice, own, group->GetRetryVersion(), known));
     known.push_back(this->Arrays.back());
   }
   if (this->LacksSuggestion() || (this->GetIso() != oldIso && hasIsosurfaces))

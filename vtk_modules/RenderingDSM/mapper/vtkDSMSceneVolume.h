@@ -137,15 +137,22 @@ private:
   template <class FieldType>
   std::shared_ptr<const typename FieldType::Values> FindOwnColors(std::size_t part) const
   {
-    const bool hasOwn = !this->HasSeveralMedia() && this->GetColor();
+    const bool hasOwn = !this->HasSeveralMedia() && !this->HasSecondArray() && this->GetColor();
     return hasOwn ? this->FindColorValues<FieldType>(part) : nullptr;
   }
-  /// Returns whether each of the arrays is a medium of its own.
-  bool HasSeveralMedia() const
+  /// Returns whether the medium's components are independent.
+  bool IsOfComponents() const
   {
     return this->GetLook().GetComponents(this->Data->GetArrays()) ==
       vtkDSMVolumeLook::Components::Independent;
   }
+  /// Returns whether the second array is the second axis of the medium's two-dimensional function.
+  bool HasSecondArray() const { return this->GetLook().HasSecondArray(this->Data->GetArrays()); }
+  /// Returns whether each of the arrays is a medium of its own.
+  bool HasSeveralMedia() const { return this->IsOfComponents() && !this->HasSecondArray(); }
+  /// Returns the range of the second axis of a two-dimensional function; none, if there is no such function. `range`:
+  /// of the values.
+  std::optional<std::array<double, 2>> GetSecondRange(const bricks::ValueRange& range) const;
   void AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene);
   /// One medium, of one of the arrays, for each of the volume's parts. `groups`: of the parts' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,

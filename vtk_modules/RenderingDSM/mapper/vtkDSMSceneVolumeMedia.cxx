@@ -40,9 +40,10 @@ vtkDSMVolumeLook::Sampling vtkDSMSceneVolume::GetMediumSampling(int component) c
 std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasOpacity)
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const bool isFirst = this->HasSeveralMedia() || !this->GetColoring().HasAny();
+  const bool isFirst =
+    this->HasSeveralMedia() || this->HasSecondArray() || !this->GetColoring().HasAny();
   const Published& array = isFirst ? *this->GetIso() : this->GetColoring();
-  const int component = this->HasSeveralMedia() ? array.Choice.Component : 0;
+  const int component = this->IsOfComponents() ? array.Choice.Component : 0;
   const bricks::ValueRange range = array.GetRange();
   const bool hasCategories =
     this->GetMediumSampling(component) == vtkDSMVolumeLook::Sampling::Categories;
@@ -53,6 +54,24 @@ std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasO
       return std::make_shared<rt::ColorMap>(
         vtkDSMTranslation::ToColorMap(property, component, range, hasOpacity, hasCategories));
     });
+}
+
+std::optional<std::array<double, 2>> vtkDSMSceneVolume::GetSecondRange(
+  const bricks::ValueRange& range) const
+{
+  if (!this->GetLook().HasFunction2D(this->Data->GetArrays()))
+  {
+    return std::nullopt;
+  }
+  // Without the array that is asked for, VTK's mapper takes gradients, too.
+  if (this->HasSecondArray() && this->GetColoring().HasAny())
+  {
+    const bricks::ValueRange own = this->GetColoring().GetRange();
+    return std::array<double, 2>{ own.First, own.Last };
+  }
+  // As VTK's mapper, which takes what values do in a cell to be a quarter of their range at most.
+  return std::array<double, 2>{ 0.0,
+    range.First < range.Last ? 0.25 * (double{ range.Last } - double{ range.First }) : 0.25 };
 }
 
 void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
@@ -98,7 +117,7 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
     return;
   }
   const std::optional<int> component =
-    this->HasSeveralMedia() ? std::optional<int>(array.Choice.Component) : std::nullopt;
+    this->IsOfComponents() ? std::optional<int>(array.Choice.Component) : std::nullopt;
   using Sampling = vtkDSMVolumeLook::Sampling;
   Sampling sampling = this->GetMediumSampling(component.value_or(0));
   if (sampling == Sampling::Categories && !this->HasSeveralMedia() && this->GetColor())
@@ -106,6 +125,7 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
     sampling = Sampling::Nearest; // the categories are those of the other array
   }
   const rt::ClipRegion clipping = look.GetClipRegion(dataToWorld);
+  const std::optional<std::array<double, 2>> seconds = this->GetSecondRange(range);
   double bounds[6];
   this->Data->GetBounds(bounds);
   const glm::dvec3 lower(bounds[0], bounds[2], bounds[4]);
@@ -119,8 +139,8 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
     [&](const auto& field, std::size_t part)
     {
       using FieldType = std::decay_t<decltype(field)>;
-      const auto key = look.GetMediumKey(
-        range, field.GetFinestLength(worldToData), glm::length(upper - lower), component, sampling);
+      const auto key = look.GetMediumKey(range, field.GetFinestLength(worldToData),
+        glm::length(upper - lower), component, sampling, seconds);
       makers.insert(known.extract(key));
       const auto [entry, isNew] = makers.try_emplace(key);
       if (isNew)
@@ -150,6 +170,10 @@ void vtkDSMSceneVolume::AddMedium(const vtkDSMVolumeLook& look, std::size_t numb
         lit->WorldToSpace = worldToData;
         lit->Look.Scattering = this->Mapper->GetScattering();
         lit->Look.Exact = this->Mapper->GetExactIntegration();
+        if (this->HasSecondArray())
+        {
+          lit->SecondValues = this->FindColorValues<FieldType>(part);
+        }
         lit->ColorValues = this->FindOwnColors<FieldType>(part);
         if (lit->ColorValues)
         {
@@ -173,7 +197,7 @@ void vtkDSMSceneVolume::AddCaps(
   {
     return;
   }
-  const int component = this->HasSeveralMedia() ? this->GetIso()->Choice.Component : 0;
+  const int component = this->IsOfComponents() ? this->GetIso()->Choice.Component : 0;
   const bool isNearest = this->GetMediumSampling(component) != vtkDSMVolumeLook::Sampling::Linear;
   this->ForEachField(*this->GetIso(), dataToWorld,
     [&](const auto& field, std::size_t part)

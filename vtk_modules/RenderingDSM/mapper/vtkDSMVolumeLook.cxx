@@ -7,7 +7,6 @@
 #include "vtkDSMVolumeMapper.h"
 
 #include "vtkCellData.h"
-#include "vtkColorTransferFunction.h"
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
 #include "vtkPlane.h"
@@ -99,219 +98,6 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
   return slices;
 }
 
-vtkDSMVolumeLook::MediumKey vtkDSMVolumeLook::GetMediumKey(const bricks::ValueRange& range,
-  double cellLength, double diagonal, const std::optional<int>& component, Sampling sampling) const
-{
-  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const double* const averaged = this->Mapper->GetAverageIPScalarRange();
-  const int mode = this->Mapper->GetBlendMode();
-  const bool isComposite = mode == vtkVolumeMapper::COMPOSITE_BLEND;
-  return { range.First, range.Last,
-    isComposite || mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND ? cellLength : 0.0,
-    isComposite ? diagonal : 0.0, property, property->GetMTime(), mode,
-    { averaged[0], averaged[1] }, component.value_or(0),
-    component ? property->GetComponentWeight(*component) : 1.0, sampling };
-}
-
-vtkDSMVolumeLook::MediumMaker vtkDSMVolumeLook::GetMediumMaker(const MediumKey& key)
-{
-  const auto& [first, last, cellLength, diagonal, property, time, mode, averaged, component, weight,
-    sampling] = key;
-  switch (mode)
-  {
-    case vtkVolumeMapper::COMPOSITE_BLEND:
-    {
-      rt::MediumLook look = vtkDSMTranslation::ToMediumLook(property, component, last - first);
-      look.Nearest = sampling != Sampling::Linear;
-      return [function = vtkDSMTranslation::ToTransferFunction(property, component, weight, first,
-                last, cellLength, diagonal, sampling == Sampling::Categories),
-               look](const rt::AnyField& any, const rt::ClipRegion& clipping)
-      {
-        return std::visit(
-          [&](const auto& field) -> rt::SceneMedium {
-            return rt::MediumOf<std::decay_t<decltype(field)>>{ field, function, look, clipping };
-          },
-          any);
-      };
-    }
-    case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
-    case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
-      return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last),
-               isMinimum = mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND](
-               const rt::AnyField& any, const rt::ClipRegion& clipping)
-      {
-        return std::visit(
-          [&](const auto& field) -> rt::SceneMedium {
-            return rt::ExtremumOf<std::decay_t<decltype(field)>>{ field, colors, isMinimum,
-              clipping };
-          },
-          any);
-      };
-    case vtkDSMVolumeMapper::INTEGRAL_BLEND:
-      return [colors = vtkDSMTranslation::ToColorMap(property, component, first, last)](
-               const rt::AnyField& any, const rt::ClipRegion& clipping)
-      {
-        return std::visit(
-          [&](const auto& field) -> rt::SceneMedium {
-            return rt::IntegralOf<std::decay_t<decltype(field)>>{ field, colors, clipping };
-          },
-          any);
-      };
-    case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
-    case vtkVolumeMapper::ADDITIVE_BLEND:
-    {
-      const bool isMean = mode == vtkVolumeMapper::AVERAGE_INTENSITY_BLEND;
-      const auto function = vtkDSMTranslation::ToSum(property, first, last,
-        isMean ? averaged : std::array<double, 2>{ first, last },
-        isMean ? cellLength : property->GetScalarOpacityUnitDistance(0));
-      return [=](const rt::AnyField& any, const rt::ClipRegion& clipping)
-      {
-        return std::visit(
-          [&](const auto& field) -> rt::SceneMedium {
-            return rt::SumOf<std::decay_t<decltype(field)>>{ field, function, isMean, clipping };
-          },
-          any);
-      };
-    }
-    default:
-      return {};
-  }
-}
-
-vtkDSMVolumeLook::Components vtkDSMVolumeLook::GetComponents(const vtkDSMImageArrays& arrays) const
-{
-  // Another component, or the magnitude, is asked for by itself.
-  if (!this->IsMedium() || this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND ||
-    !this->Mapper->GetOpacityArray().empty() || this->Mapper->GetIsoComponent() != 0)
-  {
-    return Components::One;
-  }
-  const int components = arrays.CountComponents(this->GetIsoChoice(arrays));
-  if (components <= 1)
-  {
-    return Components::One;
-  }
-  if (vtkVolume::SafeDownCast(this->Prop)->GetProperty()->GetIndependentComponents())
-  {
-    return components <= VTK_MAX_VRCOMP ? Components::Independent : Components::One;
-  }
-  return components == 2 || components == 4 ? Components::Dependent : Components::Refused;
-}
-
-vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetRequestedSampling(int component) const
-{
-  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  // To ask for the color function of a gray component would make it the one that counts.
-  const bool hasCategories = property->GetColorChannels(component) == 3 &&
-    property->GetRGBTransferFunction(component)->GetIndexedLookup() != 0;
-  return hasCategories                                              ? Sampling::Categories
-    : property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? Sampling::Nearest
-                                                                    : Sampling::Linear;
-}
-
-std::optional<vtkDSMVolumeLook::Obstacle> vtkDSMVolumeLook::FindNearestObstacle(
-  const vtkDSMImageArrays& arrays, bool isOfSamples) const
-{
-  if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
-  {
-    return Obstacle{ "in this blend mode",
-      "Call SetBlendModeToComposite(). In ParaView, set Blend Mode to Composite." };
-  }
-  if (!isOfSamples)
-  {
-    return Obstacle{ "for AMR and hyper tree grids",
-      "Draw slices with InterpolateSlicesOff(). In ParaView, use DSM Slices without Interpolate "
-      "Values, or apply Resample To Image." };
-  }
-  const std::vector<vtkDSMVolumeData::Choice> shown = this->GetShown(arrays);
-  if (std::any_of(shown.begin(), shown.end(), [](const auto& choice) { return choice.OnCells; }))
-  {
-    return Obstacle{ "for values of cells",
-      "Draw slices. In ParaView, use DSM Slices, or apply Resample To Image, which gives each "
-      "point the value of its cell." };
-  }
-  return std::nullopt;
-}
-
-vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetSampling(
-  const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const
-{
-  return this->FindNearestObstacle(arrays, isOfSamples) ? Sampling::Linear
-                                                        : this->GetRequestedSampling(component);
-}
-
-void vtkDSMVolumeLook::FindMissingFeatures(
-  const vtkDSMImageArrays& arrays, bool isOfSamples, std::vector<std::string>& warnings) const
-{
-  vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-  const auto warn = [&](bool isMissing, const std::string& feature, const std::string& remedy)
-  {
-    if (isMissing)
-    {
-      warnings.push_back("The volume is to be drawn with " + feature +
-        ", which DSM Ray Tracer does not support for volumes. The volume is drawn without it. " +
-        remedy);
-    }
-  };
-  warn(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
-    "a two-dimensional transfer function", "Call SetTransferFunctionModeTo1D().");
-  if (property->GetShade(0) != 0 && this->Mapper->GetComputeNormalFromOpacity())
-  {
-    warnings.push_back("The mapper is to compute normals from the opacity, which DSM Ray Tracer "
-                       "does not do. The volume is shaded by the gradient of its values. Call "
-                       "ComputeNormalFromOpacityOff().");
-  }
-  warn(!this->Mapper->GetOpacityArray().empty() && !this->HasOpacityArray(),
-    "opacities from another array, in this blend mode",
-    "Call SetBlendModeToComposite() or SetOpacityArray(\"\") on the mapper. In ParaView, set Blend "
-    "Mode to Composite, or turn off Use Separate Opacity Array.");
-  const Sampling requested = this->GetRequestedSampling(0);
-  const auto found = this->FindNearestObstacle(arrays, isOfSamples);
-  const Obstacle obstacle = found.value_or(Obstacle{});
-  warn(found && requested == Sampling::Categories, "a color for each category " + obstacle.Reason,
-    obstacle.Remedy +
-      " Or call IndexedLookupOff() on the color function. In ParaView, turn off "
-      "Interpret Values As Categories.");
-  warn(found && requested == Sampling::Nearest,
-    "the nearest sample (VTK's default) instead of linear interpolation " + obstacle.Reason,
-    "Call SetInterpolationTypeToLinear(). In ParaView, set Interpolation Type to Linear. For "
-    "labels: " +
-      obstacle.Remedy);
-  if (this->HasOpacityArray() || this->GetComponents(arrays) != Components::One)
-  {
-    return;
-  }
-  const int components = arrays.CountComponents(this->GetIsoChoice(arrays));
-  warn(components > 1 && property->GetIndependentComponents() == 0,
-    "colors or opacities from other components of the array, in this blend mode or with this "
-    "component",
-    "Call SetBlendModeToComposite() and SetIsoComponent(0) on the mapper, or call "
-    "IndependentComponentsOn(). In ParaView, turn on Map Scalars and turn off Multi Components "
-    "Mapping, or use the representation Volume.");
-  const auto isWeighted = [&]
-  {
-    for (int component = 1; component < std::min(components, VTK_MAX_VRCOMP); ++component)
-    {
-      if (property->GetComponentWeight(component) != 0.0)
-      {
-        return true;
-      }
-    }
-    return false;
-  };
-  warn(property->GetIndependentComponents() != 0 && this->Mapper->GetIsoComponent() == 0 &&
-      isWeighted(),
-    "all components of the array at once, in this blend mode or where there are more than four",
-    "The first component is drawn. Call SetComponentWeight(COMPONENT, 0.0) for the others, or call "
-    "SetIsoComponent() on the mapper to draw another component or the magnitude (-1).");
-}
-
-bool vtkDSMVolumeLook::HasOpacityArray() const
-{
-  return this->IsMedium() && !this->Mapper->GetOpacityArray().empty() &&
-    this->Mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
-}
-
 bool vtkDSMVolumeLook::HasColorArray() const
 {
   return this->HasColoredSlices() && !this->Mapper->GetColorArray().empty();
@@ -356,18 +142,23 @@ std::vector<vtkDSMVolumeData::Choice> vtkDSMVolumeLook::GetShown(
   }
   if (kind == Components::Independent)
   {
-    vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
-    for (int component = 0; component < components; ++component)
+    for (const int component : this->GetWeightedComponents(arrays))
     {
-      if (property->GetComponentWeight(component) > 0.0)
-      {
-        shown.push_back(ofIso(component));
-      }
+      shown.push_back(ofIso(component));
     }
-    if (!shown.empty())
-    {
-      return shown;
-    }
+  }
+  if (this->HasSecondArray(arrays))
+  {
+    vtkDSMVolumeData::Choice second{ mapper->GetTransfer2DYAxisArray(),
+      mapper->GetTransfer2DYAxisComponent() };
+    second.OnCells = arrays.CountComponents(second) == 0;
+    second.IsAveraged = second.OnCells;
+    second.Mask = iso.Mask;
+    return { shown.empty() ? iso : shown.front(), second };
+  }
+  if (!shown.empty())
+  {
+    return shown;
   }
   const bool isColored = !this->IsMedium() && this->HasColorArray();
   if (!isColored || !this->IsSlicesOnly())

@@ -18,6 +18,7 @@
 #include <vector>
 
 class vtkDSMVolumeMapper;
+class vtkImageData;
 class vtkProp3D;
 class vtkVolumeProperty;
 
@@ -67,12 +68,21 @@ public:
   Sampling GetSampling(const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
   /// the medium, the property and its time, the blend mode and the range of an average, the component whose
-  /// functions are taken and its weight. And the sampling of values.
+  /// functions are taken and its weight. And the sampling of values; a two-dimensional function (null: there is
+  /// none), its time, and the range of its second axis.
   using MediumKey = std::tuple<double, double, double, double, vtkVolumeProperty*, vtkMTimeType,
-    int, std::array<double, 2>, int, double, Sampling>;
-  /// `component`: one of several independent ones, or none (std::nullopt).
+    int, std::array<double, 2>, int, double, Sampling, vtkImageData*, vtkMTimeType,
+    std::array<double, 2>>;
+  /// `component`: one of several independent ones, or none (std::nullopt). `seconds`: the range of the second axis of
+  /// a two-dimensional function, which defines the medium; none: it does not.
   MediumKey GetMediumKey(const bricks::ValueRange& range, double cellLength, double diagonal,
-    const std::optional<int>& component, Sampling sampling) const;
+    const std::optional<int>& component, Sampling sampling,
+    const std::optional<std::array<double, 2>>& seconds) const;
+  /// Returns whether a two-dimensional function defines the medium.
+  bool HasFunction2D(const vtkDSMImageArrays& arrays) const;
+  /// Returns whether the values of another array are its second axis. Then a single component of the medium's array
+  /// is shown.
+  bool HasSecondArray(const vtkDSMImageArrays& arrays) const;
   /// Returns whether another array defines the density of the medium.
   bool HasOpacityArray() const;
   /// Makes the medium that has the values of a field, within a region.
@@ -82,8 +92,8 @@ public:
   static MediumMaker GetMediumMaker(const MediumKey& key);
   /// Returns the shown arrays, as the mapper names them. Isosurfaces: their array and, if any, that
   /// of the colors. Slices alone: the array that colors them, if any. Media: the array of the
-  /// opacities and that of the colors; if the components are independent, each component. `arrays`:
-  /// the available arrays.
+  /// opacities and that of the colors; if the components are independent, each component; with a second axis, that
+  /// of the medium and that of the axis. `arrays`: the available arrays.
   std::vector<vtkDSMVolumeData::Choice> GetShown(const vtkDSMImageArrays& arrays) const;
   /// Finite, ascending, each once; `suggested` where none is chosen and the mapper takes what data suggest. Adds
   /// what is wrong with them to the messages.
@@ -125,6 +135,12 @@ private:
   /// Null: there is none. `isOfSamples`: all values are at the points of lattices, or in their cells, not on levels.
   std::optional<Obstacle> FindNearestObstacle(
     const vtkDSMImageArrays& arrays, bool isOfSamples) const;
+  /// Why a two-dimensional function that the property requests does not define the medium. Null: it does.
+  std::optional<Obstacle> FindFunction2DObstacle(const vtkDSMImageArrays& arrays) const;
+  /// Returns whether the property requests one.
+  bool WantsFunction2D() const;
+  /// Returns the components of the array that are shown as media of their own; the first one, if none has a weight.
+  std::vector<int> GetWeightedComponents(const vtkDSMImageArrays& arrays) const;
   /// Returns the sampling that the property requests for a component.
   Sampling GetRequestedSampling(int component) const;
   bool HasColorArray() const;

@@ -126,6 +126,21 @@ void vtkDSMVolumeMapper::SetInputData(vtkDataObject* data)
   this->SetInputDataObject(0, data);
 }
 
+void vtkDSMVolumeMapper::SetTransfer2DYAxisArray(const char* name)
+{
+  const std::string array = name ? name : "";
+  if (array != this->Transfer2DYAxisArray)
+  {
+    this->Transfer2DYAxisArray = array;
+    this->Modified();
+  }
+}
+
+const char* vtkDSMVolumeMapper::GetTransfer2DYAxisArray() const
+{
+  return this->Transfer2DYAxisArray.empty() ? nullptr : this->Transfer2DYAxisArray.c_str();
+}
+
 void vtkDSMVolumeMapper::SetNumberOfIsoValues(int number)
 {
   const auto size = static_cast<std::size_t>(number > 0 ? number : 0);

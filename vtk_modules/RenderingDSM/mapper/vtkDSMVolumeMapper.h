@@ -13,7 +13,8 @@
  * show there. ScalarMode and SelectScalarArray() choose the array. In the blend mode Composite, the property's
  * InterpolationType counts, and an IndexedLookup of its color function makes categories; values of cells, of AMR and
  * of hyper tree grids are trilinear always, and so are those of all other modes. Shading is
- * VTK's, also gradient opacity; with shadows and ambient occlusion of the light options, volumes shade themselves.
+ * VTK's, also gradient opacity and two-dimensional transfer functions; with shadows and ambient occlusion of the light
+ * options, volumes shade themselves.
  * The blend mode Slice is not supported; the mapper warns about it.
  *
  * With an isovalue, with AutomaticIsoValue or with SurfacesOnly, isosurfaces are shown instead. Isovalues and look are
@@ -172,6 +173,20 @@ public:
   vtkGetMacro(OpacityArrayOnCells, bool);
   vtkSetMacro(OpacityComponent, int);
   vtkGetMacro(OpacityComponent, int);
+  ///@}
+
+  ///@{
+  /**
+   * The array of points or, without any of that name, of cells, and its component (-1: its magnitude), whose values
+   * are the second axis of the property's two-dimensional transfer function. Null (the default): the length of the
+   * gradient is. The function's image covers the range of all ranks' values or, of gradients, values that grow by up
+   * to a quarter of the range of the shown array in a cell of mean size, as in vtkGPUVolumeRayCastMapper. Opacities
+   * are those of the unit distance.
+   */
+  void SetTransfer2DYAxisArray(const char* name);
+  const char* GetTransfer2DYAxisArray() const;
+  vtkSetMacro(Transfer2DYAxisComponent, int);
+  vtkGetMacro(Transfer2DYAxisComponent, int);
   ///@}
 
   ///@{

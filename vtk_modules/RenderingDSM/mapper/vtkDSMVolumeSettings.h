@@ -29,6 +29,8 @@ class vtkScalarsToColors;
   X(OpacityArray, std::string, "")                                                                 \
   X(OpacityArrayOnCells, bool, false)                                                              \
   X(OpacityComponent, int, 0)                                                                      \
+  X(Transfer2DYAxisArray, std::string, "")                                                         \
+  X(Transfer2DYAxisComponent, int, 0)                                                              \
   X(Slicing, bool, false)                                                                          \
   X(SlicePlanes, vtkSmartPointer<vtkPlaneCollection>, {})                                          \
   X(SliceOpacity, vtkSmartPointer<vtkPiecewiseFunction>, {})                                       \

@@ -160,6 +160,37 @@ std::shared_ptr<const rt::TransferFunction> vtkDSMTranslation::ToTransferFunctio
     first, last, look, functions.GetNodes(), LeastDepth / diagonal, cellLength);
 }
 
+std::shared_ptr<const rt::TransferFunction2D> vtkDSMTranslation::ToTransferFunction2D(
+  vtkVolumeProperty* property, int component, double weight, double first, double last,
+  const std::array<double, 2>& seconds, double cellLength, double diagonal)
+{
+  // A single number is at the begin of the image, as VTK's mapper has it.
+  const auto widen = [](double begin, double end)
+  { return glm::dvec2(begin, begin < end ? end : begin + std::max(1.0, std::abs(begin)) * 1e-3); };
+  vtkImageData* const function = property->GetTransferFunction2D(component);
+  vtkDataArray* const texels = function->GetPointData()->GetScalars();
+  rt::TransferFunction2D::Image image;
+  image.Columns = function->GetDimensions()[0];
+  image.Rows = function->GetDimensions()[1];
+  image.Values = widen(first, last);
+  image.Seconds = widen(seconds[0], seconds[1]);
+  image.IsNearest = property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
+  const vtkIdType count = vtkIdType{ image.Columns } * image.Rows;
+  for (vtkIdType texel = 0; texel < count; ++texel)
+  {
+    double look[4];
+    texels->GetTuple(texel, look);
+    image.Looks.emplace_back(look[0], look[1], look[2], std::clamp(look[3], 0.0, 1.0));
+  }
+  const double unit = property->GetScalarOpacityUnitDistance(component);
+  const auto getExtinction = [&](double opacity)
+  {
+    const double extinction = -weight * std::log1p(-std::min(opacity, MostOpacity)) / unit;
+    return extinction * diagonal < LeastDepth ? 0.0 : extinction;
+  };
+  return std::make_shared<const rt::TransferFunction2D>(image, getExtinction, cellLength);
+}
+
 rt::MediumLook vtkDSMTranslation::ToMediumLook(
   vtkVolumeProperty* property, int component, double range)
 {
@@ -172,7 +203,9 @@ rt::MediumLook vtkDSMTranslation::ToMediumLook(
   look.Surface.SpecularPower = static_cast<float>(property->GetSpecularPower(component));
   constexpr double most = 0.99; // at 1, all light goes straight on
   look.Anisotropy = std::clamp<double>(property->GetScatteringAnisotropy(), -most, most);
-  if (property->HasGradientOpacity(component) && range > 0.0)
+  // With a two-dimensional function, VTK's mapper has no other one of gradients.
+  if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_1D &&
+    property->HasGradientOpacity(component) && range > 0.0)
   {
     // As VTK's mapper, which takes what values do in a cell to be a quarter of their range at most.
     constexpr int count = 1024;

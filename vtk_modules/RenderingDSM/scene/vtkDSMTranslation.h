@@ -50,6 +50,13 @@ public:
     int component, double weight, double first, double last, double cellLength, double diagonal,
     bool hasCategories);
 
+  /// The same of a two-dimensional function, which must be there. As in vtkGPUVolumeRayCastMapper, the image covers
+  /// the values from `first` to `last` and the second numbers between the two of `seconds`, whatever its origin and
+  /// spacing are, and is interpolated as the property's InterpolationType says. An opacity is that of a unit distance.
+  static std::shared_ptr<const rt::TransferFunction2D> ToTransferFunction2D(
+    vtkVolumeProperty* property, int component, double weight, double first, double last,
+    const std::array<double, 2>& seconds, double cellLength, double diagonal);
+
   /// The shading of a property's component, and its gradient opacity, for a medium whose values differ so much.
   static rt::MediumLook ToMediumLook(vtkVolumeProperty* property, int component, double range);
   /// The same functions as colors and opacities of single values.

@@ -592,7 +592,7 @@ private:
     const Ways& ways, const Vector amount[4], Vector passed, std::uint32_t lanes)
   {
     const F tag;
-    HWY_ALIGN float numbers[8][Width];
+    HWY_ALIGN float numbers[11][Width];
     for (int channel = 0; channel < 4; ++channel)
     {
       hn::Store(amount[channel], tag, numbers[channel]);
@@ -601,14 +601,21 @@ private:
     hn::Store(ways.End, tag, numbers[5]);
     hn::Store(passed, tag, numbers[6]);
     hn::Store(this->Transmittance, tag, numbers[7]);
+    hn::Store(ways.First, tag, numbers[8]);
+    hn::Store(ways.Middle, tag, numbers[9]);
+    hn::Store(ways.Last, tag, numbers[10]);
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctz(lanes);
       const auto ray = static_cast<int>(this->Ray[lane]);
       this->Light.Transmittance[ray] = numbers[7][lane];
-      this->Light.Keep(ray, this->GetT(lane, numbers[4][lane]), this->GetT(lane, numbers[5][lane]),
-        Lanes(numbers[0][lane], numbers[1][lane], numbers[2][lane], numbers[3][lane]),
-        numbers[6][lane]);
+      MediumPiece piece{ this->GetT(lane, numbers[4][lane]), this->GetT(lane, numbers[5][lane]),
+        Lanes(numbers[0][lane], numbers[1][lane], numbers[2][lane], numbers[3][lane]) };
+      for (int value = 0; value < 3; ++value)
+      {
+        piece.Values[value] = numbers[8 + value][lane];
+      }
+      this->Light.Keep(ray, piece, numbers[6][lane]);
     }
   }
 

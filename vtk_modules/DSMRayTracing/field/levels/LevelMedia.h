@@ -42,6 +42,7 @@ public:
     all.IsExact = light.IsExact;
     all.DarkBelow = light.DarkBelow;
     all.HasLateExtinction = light.HasLateExtinction;
+    all.KeepsValues = light.KeepsValues;
     // Pieces are joined when they are in order.
     ForEachRay(
       wanted, [&](int ray) { all.FirstPiece[ray] = std::numeric_limits<std::size_t>::max(); });

@@ -62,7 +62,15 @@ private:
       const Lanes amount = std::abs(way) <= MediumTolerance::ShortWay
         ? slope * Lanes(length / count)
         : (integral - before) * Lanes(length / count / way);
-      light.Add(ray, { segment.GetT(begin), segment.GetT(end), amount });
+      MediumPiece piece{ segment.GetT(begin), segment.GetT(end), amount };
+      if (light.KeepsValues)
+      {
+        const double middle = function.GetPlace(segment.Values.Evaluate(0.5 * (begin + end)));
+        piece.Values[0] = static_cast<float>(place);
+        piece.Values[1] = static_cast<float>(middle);
+        piece.Values[2] = static_cast<float>(next);
+      }
+      light.Add(ray, piece);
       place = next;
     }
     return light.IsDark(ray);
