@@ -136,19 +136,23 @@ once = render(view)
 check(abs(once - twice).mean() < 0.1, f"the same array twice is once: {abs(once - twice).mean():.3f}")
 check(abs(once - far)[get_covered(once)].mean() > 5.0, "another array for opacity is another picture")
 
-# A function of the value and of the gradient, or of another array. Volume applies an opacity at each sample: twice a cell.
+# A function of the value and of the gradient, or of another array. Volume applies an opacity at each sample, which are
+# eight in a cell of so few.
+# It takes differences over 25 / 24 of a cell for those over a cell.
 unit_distance = display.ScalarOpacityUnitDistance
-display.ScalarOpacityUnitDistance, display.UseTransfer2D = 0.5, 1
-boxes = simple.GetTransferFunction2D("waves")
-boxes.OutputDimensions, boxes.Range = [32, 32], [-1.0, 1.0, 0.0, 1.0]
-boxes.Boxes = [-0.4, 0.5, 0.6, 0.5, 1.0, 0.3, 0.1, 0.2, 0.2, 0.1, 0.8, 0.7, 0.1, 0.4, 1.0, 0.1]
-compare("GradientBoxes", mean=1.5, largest=80)
+simple.ColorBy(display, ("POINTS", "ways"))
+display.ScalarOpacityUnitDistance, display.UseTransfer2D = 0.125, 1
+boxes = simple.GetTransferFunction2D("ways")
+boxes.OutputDimensions, boxes.Range = [32, 32], [0.0, 21.0, 0.0, 1.0]
+boxes.Boxes = [4.0, 0.0, 6.0, 0.4, 1.0, 0.3, 0.1, 0.2, 9.0, 0.1, 9.0, 0.9, 0.1, 0.4, 1.0, 0.1]
+compare("GradientBoxes", mean=2.0, largest=120)
 of_gradients = render(view)
 check(get_covered(of_gradients).any(), "the boxes show something")
-display.UseGradientForTransfer2D, display.ColorArray2Name = 0, ["POINTS", "ways"]
-compare("ArrayBoxes", mean=1.5, largest=80)
+display.UseGradientForTransfer2D, display.ColorArray2Name = 0, ["POINTS", "x2"]
+compare("ArrayBoxes", mean=2.0, largest=120)
 check(abs(of_gradients - render(view)).mean() > 2.0, "another array is another picture")
 display.UseTransfer2D, display.UseGradientForTransfer2D, display.ScalarOpacityUnitDistance = 0, 1, unit_distance
+simple.ColorBy(display, ("POINTS", "waves"))
 check_equal(render(view), once, "one-dimensional functions show what they showed", tolerance=0)
 
 # As the color map's editor sets it: a logarithmic map of values from 0 on, and colors beyond the range.
