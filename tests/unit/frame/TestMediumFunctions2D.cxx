@@ -37,7 +37,7 @@ double GetExtinction(double opacity)
 class TestMediumFunctions2D : public TestMediumIntegral
 {
 protected:
-  /// Of 255. The second number is taken to change evenly in half a cell, and edges of the function are hard.
+  /// Of 255, at single pixels: edges of the function are hard.
   static constexpr double MostOff = 3.0;
 
   TestMediumFunctions2D() { this->StepsInCell = 64.0; }
@@ -74,14 +74,6 @@ TEST_F(TestMediumFunctions2D, InAnotherMedium)
   this->Add([](const glm::dvec3& p) { return 2.0 - 3.0 * glm::length(p); },
     { { -3.0, { 0.1, 0.3, 0.9, 0.0 } }, { 3.0, { 0.9, 0.2, 0.1, 6.0 } } });
   EXPECT_LT(this->Compare(GetPerspective()), MostOff);
-}
-
-TEST_F(TestMediumFunctions2D, Exactly)
-{
-  rt::MediumLook look;
-  look.Exact = true;
-  this->Add2D(GetWaves, GetSecond, MakeImage(), GetExtinction, look);
-  EXPECT_LT(this->Compare(GetPerspective()), 1.0);
 }
 
 /// Rows that are the same are a function of the values alone.

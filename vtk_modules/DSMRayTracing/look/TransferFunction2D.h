@@ -49,7 +49,7 @@ public:
   const std::shared_ptr<const TransferFunction>& GetEnvelope() const { return this->Envelope; }
 
   /// The amount (MediumPiece) of a way on which both numbers change evenly from its begin to the middle, and from there
-  /// to its end. What its front hides of its back is taken out of the emission. `x`: value, as a place of the envelope;
+  /// to its end. Its front hides a part of its back: the emission lacks that. `x`: value, as a place of the envelope;
   /// `y`: second number. `length`: of the whole way.
   Lanes GetAmount(
     const glm::dvec2& begin, const glm::dvec2& middle, const glm::dvec2& end, double length) const;
@@ -78,8 +78,8 @@ private:
   Lanes GetNearest(double column, double row) const;
   /// The mean over the values between two columns, where the second number is that of a row, which may lie between two.
   Lanes GetMean(double row, double begin, double end) const;
-  /// A way on which both numbers change evenly: calls `add(mean, part)` for its parts in order, of which each is so much
-  /// of the way.
+  /// A way on which both numbers change evenly: calls `add(mean, part)` for its parts in order, of which each is so
+  /// much of the way.
   template <class Add>
   void VisitParts(const glm::dvec2& begin, const glm::dvec2& end, const Add& add) const;
   void SetNodes(const Image& image, const std::function<double(double)>& getExtinction);

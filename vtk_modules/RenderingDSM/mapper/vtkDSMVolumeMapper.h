@@ -177,11 +177,11 @@ public:
 
   ///@{
   /**
-   * The array of points or, without any of that name, of cells, and its component (-1: its magnitude), whose values
-   * are the second axis of the property's two-dimensional transfer function. Null (the default): the length of the
-   * gradient is. The function's image covers the range of all ranks' values or, of gradients, values that grow by up
-   * to a quarter of the range of the shown array in a cell of mean size, as in vtkGPUVolumeRayCastMapper. Opacities
-   * are those of the unit distance.
+   * The array that is the second axis of the property's two-dimensional transfer function, and its component (-1: its
+   * magnitude). An array of points comes before one of cells of the same name. Null (the default): the length of the
+   * gradient is the second axis. As in vtkGPUVolumeRayCastMapper, the function's image covers the ranges of both
+   * arrays. It covers gradients by which values grow in a cell of mean size by up to a quarter of their range.
+   * Ranges are those of all ranks. Opacities are those of the unit distance.
    */
   void SetTransfer2DYAxisArray(const char* name);
   const char* GetTransfer2DYAxisArray() const;
