@@ -46,6 +46,54 @@ HWY_INLINE auto LoadLanes(const T* from, const std::size_t* places)
   return SetLanes<T, Lanes>([=](int lane) { return from[places[lane]]; });
 }
 
+/// Loads from[offsets] and from[offsets + 1]: half as many loads as of lanes.
+template <class F>
+HWY_INLINE void GatherPairs(
+  const float* from, hn::Vec<hn::RebindToSigned<F>> offsets, hn::Vec<F>& first, hn::Vec<F>& second)
+{
+  const F tag;
+  if constexpr (hn::MaxLanes(F()) == 1)
+  {
+    first = hn::GatherIndex(tag, from, offsets);
+    second = hn::GatherIndex(tag, from + 1, offsets);
+  }
+#if HWY_TARGET != HWY_SCALAR
+  else
+  {
+    const hn::Repartition<std::int64_t, F> pairs;
+    const hn::Half<hn::RebindToSigned<F>> half;
+    const auto load = [&](auto part)
+    {
+      return hn::BitCast(tag,
+        hn::GatherOffset(pairs, reinterpret_cast<const std::int64_t*>(from),
+          hn::ShiftLeft<2>(hn::PromoteTo(pairs, part))));
+    };
+    const auto lower = load(hn::LowerHalf(half, offsets));
+    const auto upper = load(hn::UpperHalf(half, offsets));
+    first = hn::ConcatEven(tag, upper, lower);
+    second = hn::ConcatOdd(tag, upper, lower);
+  }
+#endif
+}
+
+/// Floats out of the doubles that `get(lane)` returns from a lane on, for half of the lanes, or for the only one.
+template <class F, class Get>
+HWY_INLINE hn::Vec<F> DemoteLanes(const Get& get)
+{
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
+  if constexpr (lanes == 1)
+  {
+    return hn::DemoteTo(F(), get(0));
+  }
+#if HWY_TARGET != HWY_SCALAR
+  else
+  {
+    const hn::Half<F> half;
+    return hn::Combine(F(), hn::DemoteTo(half, get(lanes / 2)), hn::DemoteTo(half, get(0)));
+  }
+#endif
+}
+
 /// Whole numbers from 0 to 2^52.
 template <class Vector>
 auto ToNumbers(Vector whole)

@@ -205,6 +205,11 @@ void TransferFunction::SetBins()
       own.Tinge += part.Steepness.Tinge * (upper - lower);
     }
   }
+  this->SeenBins.push_back(0);
+  for (const Behavior& bin : bins)
+  {
+    this->SeenBins.push_back(this->SeenBins.back() + (bin.Extinction > 0.0 ? 1 : 0));
+  }
   this->Largest.push_back(bins);
   for (std::size_t width = 1; 2 * width <= bins.size(); width *= 2)
   {

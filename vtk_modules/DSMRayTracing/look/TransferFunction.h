@@ -97,6 +97,21 @@ public:
   }
   bool IsSeenAtAll() const { return this->SeenBefore.back() > 0; }
 
+  ///@{
+  /// The bin of a place: 1 for the first one, 0 below the range, Bins + 1 above. Returns whether any bin from `first`
+  /// to `last` has a visible value, or all of them have.
+  int GetBin(double place) const
+  {
+    const double bin = place - this->Begin;
+    return bin >= Bins ? Bins + 1 : bin >= 0.0 ? static_cast<int>(bin) + 1 : 0;
+  }
+  bool IsAnyBinSeen(int first, int last) const { return this->CountSeen(first, last) > 0; }
+  bool AreAllBinsSeen(int first, int last) const
+  {
+    return this->CountSeen(first, last) > last - first;
+  }
+  ///@}
+
   /// Shared by functions that are the same, for all practical purposes.
   std::uint64_t GetDigest() const { return this->Digest; }
 
@@ -121,11 +136,10 @@ private:
   void SetTable();
   /// The last part that begins at or before a place; that of a place that is not a number is part 0.
   std::size_t FindPart(double place) const;
-  /// 1 for the first bin; 0 below the range, Bins + 1 above.
-  int GetBin(double place) const
+  int CountSeen(int first, int last) const
   {
-    const double bin = place - this->Begin;
-    return bin >= Bins ? Bins + 1 : bin >= 0.0 ? static_cast<int>(bin) + 1 : 0;
+    return this->SeenBins[static_cast<std::size_t>(last) + 1] -
+      this->SeenBins[static_cast<std::size_t>(first)];
   }
   bool IsPlaceSeen(double begin, double end) const;
   Behavior FindFineBehavior(double begin, double end) const;
@@ -138,6 +152,7 @@ private:
   std::vector<Part> Parts;
   Table Floats;
   std::vector<int> SeenBefore; ///< parts before each that are seen; one more at the end
+  std::vector<int> SeenBins;   ///< bins before each that are seen; one more at the end
   /// Largest Behavior of 1, 2, 4 ... bins that follow one another, from each bin on.
   std::vector<std::vector<Behavior>> Largest;
   std::uint64_t Digest;

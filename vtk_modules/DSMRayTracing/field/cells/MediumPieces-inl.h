@@ -10,6 +10,7 @@
 #include "DSMRayTracing/base/Lanes.h"
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/base/Transmittance-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
@@ -87,21 +88,21 @@ public:
     this->Ray = number;
     this->Origin = origin;
     this->Scale = scale;
-    HWY_ALIGN float sums[4][Width] = {};
-    for (std::uint32_t left = lanes; left != 0; left &= left - 1)
+    std::size_t own[Width];
+    for (int lane = 0; lane < Width; ++lane)
     {
-      const int lane = __builtin_ctz(left);
-      for (int channel = 0; channel < 3; ++channel)
-      {
-        sums[channel][lane] = static_cast<float>(this->Light.Sum[channel][number[lane]]);
-      }
-      sums[3][lane] = static_cast<float>(this->Light.Transmittance[number[lane]]);
+      own[lane] = number[(lanes >> lane & 1) != 0 ? lane : __builtin_ctz(lanes)];
     }
+    const auto load = [&](const double* sums)
+    {
+      return DemoteLanes<F>(
+        [&](int part) { return LoadLanes<double, (Width + 1) / 2>(sums, own + part); });
+    };
     for (int channel = 0; channel < 3; ++channel)
     {
-      this->Sum[channel] = hn::Load(tag, sums[channel]);
+      this->Sum[channel] = load(this->Light.Sum[channel]);
     }
-    this->Transmittance = hn::Load(tag, sums[3]);
+    this->Transmittance = load(this->Light.Transmittance);
     this->Nearest = hn::Set(tag, std::numeric_limits<float>::infinity());
     this->Farthest = hn::Neg(this->Nearest);
   }

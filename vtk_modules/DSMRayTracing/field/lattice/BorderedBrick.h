@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace rt
@@ -30,18 +29,27 @@ public:
     const bricks::VoxelField& field, dsm::BlockId id, const TransferFunction& function,
     MediumBrickMemory& memory)
   {
-    memory.Bordereds.resize(MediumBrickMemory::BorderedBricks);
-    auto& own = memory.Bordereds[id % MediumBrickMemory::BorderedBricks];
-    if (own.Id != static_cast<std::int64_t>(id))
-    {
-      own.Id = -1; // a store may throw
-      Fill(store, worker, field, id, function, own.Samples);
-      own.Id = static_cast<std::int64_t>(id);
-    }
-    return own.Samples.data();
+    const auto points = static_cast<std::size_t>(field.Lattice.GetEdge() + 3);
+    memory.Bordered.SetCount(GetCount(points * points * points * sizeof(float)));
+    return memory.Bordered
+      .Get(
+        id, [&](std::vector<float>& samples) { Fill(store, worker, field, id, function, samples); })
+      .data();
   }
 
 private:
+  /// Bricks of so many bytes that are kept: a power of two.
+  static std::size_t GetCount(std::size_t bytes)
+  {
+    constexpr std::size_t most = std::size_t{ 16 } << 20;
+    std::size_t count = 64;
+    while (2 * count * bytes <= most)
+    {
+      count *= 2;
+    }
+    return count;
+  }
+
   template <class Store>
   static void Fill(Store& store, typename Store::Worker& worker, const bricks::VoxelField& field,
     dsm::BlockId id, const TransferFunction& function, std::vector<float>& samples)

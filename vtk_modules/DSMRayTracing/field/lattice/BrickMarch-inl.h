@@ -20,9 +20,9 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -107,9 +107,10 @@ private:
     const F tag;
     HWY_ALIGN double enter[Width];
     HWY_ALIGN double distance[Width];
-    std::size_t number[Width];
     Rays rays;
-    this->SetRays(first, some, number, enter, distance, rays);
+    this->SetRays(first, some, enter, distance, rays);
+    std::size_t number[Width];
+    std::iota(number, number + Width, static_cast<std::size_t>(first));
     this->Ways.SetRays(number, some, enter, distance);
     Mask open = GetBitMask(tag, some);
     Vector value = hn::Zero(tag);
@@ -146,12 +147,14 @@ private:
         node = hn::IfThenElse(hn::RebindMask(NumberTag(), joined), node, own);
         error = hn::IfThenElse(joined, error, ownError);
         joined = isJoined(nodes, error, node);
-        if (!hn::AllFalse(tag, hn::AndNot(joined, open)))
+        const Mask cells = hn::AndNot(joined, open);
+        if (!hn::AllFalse(tag, cells))
         {
-          Choose(joined, this->GetCells(rays), nodes);
+          const Mask seen = this->GoToCells(rays, cells, own, nodes);
+          error = hn::IfThenElse(hn::AndNot(seen, cells), hn::Set(tag, MediumBrick::Unseen), error);
           if (this->Brick.Shading)
           {
-            this->Halve(rays, hn::AndNot(joined, open), node, seenLength, nodes);
+            this->Halve(rays, hn::And(seen, cells), node, seenLength, nodes);
           }
         }
       }
@@ -172,46 +175,57 @@ private:
     return dark;
   }
 
-  void SetRays(int first, std::uint32_t some, std::size_t* number, double* enter, double* distance,
-    Rays& rays) const
+  /// Sets T where rays enter the brick, and from there to where they leave it.
+  void SetRays(int first, std::uint32_t some, double* enter, double* distance, Rays& rays) const
   {
     const F tag;
-    HWY_ALIGN float numbers[13][Width];
-    for (int lane = 0; lane < Width; ++lane)
+    const hn::CappedTag<double, (Width + 1) / 2> doubles;
+    // Copies of one that is there stand for those that are not.
+    const int other = first + __builtin_ctz(some);
+    const auto load = [&](const double* numbers, int part)
     {
-      // Copies of one that is there stand for those that are not.
-      const int ray = first + ((some >> lane & 1) != 0 ? lane : __builtin_ctz(some));
-      number[lane] = static_cast<std::size_t>(ray);
-      enter[lane] = this->Packet.BrickEnter[ray];
-      distance[lane] = this->Packet.BrickLeave[ray] - enter[lane];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double fine = IsStretched ? 1.0 : static_cast<double>(this->Fine);
-        const double way = this->Packet.Direction[axis][ray];
-        const double start = this->Packet.Origin[axis][ray] + enter[lane] * way;
-        constexpr double largest = 1e30;
-        numbers[axis][lane] = static_cast<float>((start - this->Origin[axis]) * fine);
-        numbers[3 + axis][lane] = static_cast<float>(way * distance[lane] * fine);
-        numbers[6 + axis][lane] =
-          static_cast<float>(std::clamp(1.0 / (way * distance[lane] * fine), -largest, largest));
-      }
-      numbers[9][lane] = static_cast<float>(this->Light.Length[ray] * distance[lane]);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        numbers[10 + axis][lane] = this->Light.ToViewer[axis][ray];
-      }
+      return hn::IfThenElse(GetBitMask(doubles, some >> part),
+        hn::LoadU(doubles, numbers + first + part), hn::Set(doubles, numbers[other]));
+    };
+    for (int part = 0; part < Width; part += static_cast<int>(hn::MaxLanes(doubles)))
+    {
+      const auto begin = load(this->Packet.BrickEnter, part);
+      hn::Store(begin, doubles, enter + part);
+      hn::Store(hn::Sub(load(this->Packet.BrickLeave, part), begin), doubles, distance + part);
     }
     const Vector zero = hn::Zero(tag);
+    const auto fine = hn::Set(doubles, IsStretched ? 1.0 : static_cast<double>(this->Fine));
     for (int axis = 0; axis < 3; ++axis)
     {
-      rays.Start[axis] = hn::Load(tag, numbers[axis]);
-      rays.Way[axis] = hn::Load(tag, numbers[3 + axis]);
-      rays.Inverse[axis] = hn::Load(tag, numbers[6 + axis]);
-      rays.ToViewer[axis] = hn::Load(tag, numbers[10 + axis]);
+      const auto getStart = [&](int part)
+      {
+        const auto way =
+          hn::Mul(hn::Load(doubles, enter + part), load(this->Packet.Direction[axis], part));
+        const auto start = hn::Add(load(this->Packet.Origin[axis], part), way);
+        return hn::Mul(hn::Sub(start, hn::Set(doubles, this->Origin[axis])), fine);
+      };
+      const auto getWay = [&](int part)
+      {
+        const auto direction = load(this->Packet.Direction[axis], part);
+        return hn::Mul(hn::Mul(direction, hn::Load(doubles, distance + part)), fine);
+      };
+      const auto getInverse = [&](int part)
+      {
+        const auto largest = hn::Set(doubles, 1e30);
+        const auto inverse = hn::Div(hn::Set(doubles, 1.0), getWay(part));
+        return hn::Min(hn::Max(inverse, hn::Neg(largest)), largest);
+      };
+      rays.Start[axis] = DemoteLanes<F>(getStart);
+      rays.Way[axis] = DemoteLanes<F>(getWay);
+      rays.Inverse[axis] = DemoteLanes<F>(getInverse);
+      rays.ToViewer[axis] =
+        hn::IfThenElse(GetBitMask(tag, some), hn::LoadU(tag, this->Light.ToViewer[axis] + first),
+          hn::Set(tag, this->Light.ToViewer[axis][other]));
       const Vector last = hn::Set(tag, this->Count[axis] - 1.0f);
       rays.Cell[axis] = this->FindCells(axis, rays.Start[axis], zero, last, LargestSteps);
     }
-    rays.Length = hn::Load(tag, numbers[9]);
+    rays.Length = DemoteLanes<F>([&](int part)
+      { return hn::Mul(load(this->Light.Length, part), hn::Load(doubles, distance + part)); });
     rays.T = zero;
   }
 
@@ -267,16 +281,58 @@ private:
     this->SetExit(rays, nodes);
     return nodes;
   }
-  HWY_INLINE Nodes GetCells(const Rays& rays) const
+  /// Replaces `macrocells` with the cells that rays are in, or with blocks of 2 x 2 x 2 cells that show nothing. Returns
+  /// those that may show anything. `number`: of the nodes.
+  HWY_INLINE Mask GoToCells(const Rays& rays, Mask macrocells, Numbers number, Nodes& nodes) const
   {
-    Nodes nodes;
+    const F tag;
+    const NumberTag numbers;
+    const hn::RebindToUnsigned<F> words;
+    const Vector one = hn::Set(tag, 1.0f);
+    const Vector two = hn::Set(tag, 2.0f);
+    const Vector half = hn::Set(tag, 0.5f);
+    Vector block[3];
+    Vector within[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      nodes.Low[axis] = rays.Cell[axis];
-      nodes.High[axis] = hn::Add(rays.Cell[axis], hn::Set(F(), 1.0f));
+      const Vector cell = hn::Floor(
+        hn::Mul(hn::Sub(rays.Cell[axis], nodes.Low[axis]), hn::Set(tag, 1.0f / this->Fine)));
+      block[axis] = hn::Floor(hn::Mul(cell, half));
+      within[axis] = hn::Sub(cell, hn::Mul(two, block[axis]));
     }
-    this->SetExit(rays, nodes);
-    return nodes;
+    // Two words for each macrocell; blocks are 2, 8 and 32 bits apart.
+    const Numbers first =
+      hn::Sub(number, hn::Set(numbers, std::int32_t{ this->Brick.FirstMacrocell }));
+    const Numbers at = hn::IfThenElseZero(hn::RebindMask(numbers, macrocells),
+      hn::Add(hn::ShiftLeft<1>(first), hn::ConvertTo(numbers, block[2])));
+    const Numbers all =
+      hn::GatherIndex(numbers, reinterpret_cast<const std::int32_t*>(this->Brick.SeenCells), at);
+    const auto ofBlock = hn::Shr(hn::BitCast(words, all),
+      hn::BitCast(words,
+        hn::ConvertTo(
+          numbers, hn::Add(hn::Mul(two, block[0]), hn::Mul(hn::Set(tag, 8.0f), block[1])))));
+    const auto isSet = [&](auto bits)
+    { return hn::RebindMask(tag, hn::Ne(bits, hn::Zero(words))); };
+    const Mask isBlockSeen = isSet(hn::And(ofBlock, hn::Set(words, 0x00330033u)));
+    const auto ofCell = hn::Shr(ofBlock,
+      hn::BitCast(words,
+        hn::ConvertTo(numbers,
+          hn::Add(within[0],
+            hn::Add(
+              hn::Mul(hn::Set(tag, 4.0f), within[1]), hn::Mul(hn::Set(tag, 16.0f), within[2]))))));
+    Nodes cells;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Vector blockLow =
+        hn::Add(nodes.Low[axis], hn::Mul(hn::Set(tag, 2.0f * this->Fine), block[axis]));
+      const Vector blockHigh =
+        hn::Min(hn::Add(blockLow, hn::Set(tag, 2.0f * this->Fine)), nodes.High[axis]);
+      cells.Low[axis] = hn::IfThenElse(isBlockSeen, rays.Cell[axis], blockLow);
+      cells.High[axis] = hn::IfThenElse(isBlockSeen, hn::Add(rays.Cell[axis], one), blockHigh);
+    }
+    this->SetExit(rays, cells);
+    Choose(hn::Not(macrocells), cells, nodes);
+    return isSet(hn::And(ofCell, hn::Set(words, 1u)));
   }
   HWY_INLINE void SetExit(const Rays& rays, Nodes& nodes) const
   {
@@ -408,9 +464,7 @@ private:
     const F tag;
     const Vector row = hn::Mul(place[1], hn::Set(tag, static_cast<float>(this->Brick.Row)));
     const Vector slice = hn::Mul(place[2], hn::Set(tag, static_cast<float>(this->Brick.Slice)));
-    HWY_ALIGN std::int32_t offsets[Width];
-    hn::Store(
-      hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice)), NumberTag(), offsets);
+    const Numbers offsets = hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice));
     switch (this->Brick.Kind)
     {
       case MediumBrick::SampleKind::Float:
@@ -431,31 +485,40 @@ private:
     }
   }
   template <class T, int Pairs>
-  HWY_INLINE void LoadPairs(const std::int32_t* offsets, Vector* samples) const
+  HWY_INLINE void LoadPairs(Numbers offsets, Vector* samples) const
   {
     const F tag;
     const Vector subtracted = hn::Set(tag, this->Brick.Subtracted);
+    HWY_ALIGN std::int32_t stored[Width];
+    hn::Store(offsets, NumberTag(), stored);
     for (int pair = 0; pair < (Pairs == 0 ? 1 : Pairs); ++pair)
     {
       const T* const first = static_cast<const T*>(this->Brick.Samples) +
         (pair & 1) * this->Brick.Row + (pair >> 1) * this->Brick.Slice;
-      const auto load = [&](int side)
+      Vector own[2];
+      if constexpr (std::is_same_v<T, float> && Pairs != 0)
       {
-        if constexpr (std::is_same_v<T, float>)
-        {
-          return hn::GatherIndex(tag, first + side, hn::Load(NumberTag(), offsets));
-        }
-        else
-        {
-          const auto whole = SetLanes<std::int32_t, Width>(
-            [&](int lane) { return std::int32_t{ first[offsets[lane] + side] }; });
-          return hn::ConvertTo(tag, whole);
-        }
-      };
-      samples[2 * pair] = hn::Sub(load(0), subtracted);
-      if constexpr (Pairs != 0)
+        GatherPairs<F>(first, offsets, own[0], own[1]);
+      }
+      else
       {
-        samples[2 * pair + 1] = hn::Sub(load(1), subtracted);
+        for (int side = 0; side < (Pairs == 0 ? 1 : 2); ++side)
+        {
+          if constexpr (std::is_same_v<T, float>)
+          {
+            own[side] = hn::GatherIndex(tag, first + side, offsets);
+          }
+          else
+          {
+            own[side] = hn::ConvertTo(tag,
+              SetLanes<std::int32_t, Width>(
+                [&](int lane) { return std::int32_t{ first[stored[lane] + side] }; }));
+          }
+        }
+      }
+      for (int side = 0; side < (Pairs == 0 ? 1 : 2); ++side)
+      {
+        samples[(Pairs == 0 ? 1 : 2) * pair + side] = hn::Sub(own[side], subtracted);
       }
     }
   }
@@ -528,7 +591,7 @@ private:
       if (this->Ways.HasShaded())
       {
         const Vector center = this->Ways.FindCenter(hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
-        this->Shade(rays, this->FindPlaces(rays, nodes, center), areCells ? corners : nullptr);
+        this->Shade(rays, this->FindPlaces(rays, nodes, center));
       }
     }
     else
@@ -539,12 +602,12 @@ private:
     hasValue = there;
   }
 
-  /// Shades what MediumPieces has kept apart, at places. `corners`: the samples around them, or null.
-  HWY_INLINE void Shade(const Rays& rays, const Places& places, const Vector* corners)
+  /// Shades what MediumPieces has kept apart, at places.
+  HWY_INLINE void Shade(const Rays& rays, const Places& places)
   {
     using Shading = GradientShading<F>;
     Vector gradient[3];
-    Shading::FindGradients(this->Brick, places.Cell, places.Within, corners, gradient);
+    Shading::FindGradients(this->Brick, places.Cell, places.Within, gradient);
     Vector ofEmission[3];
     Vector ofOpacity[3];
     Shading::Shade(*this->Brick.Shading, gradient, rays.ToViewer, ofEmission, ofOpacity);

@@ -8,6 +8,7 @@
 #endif
 
 #include "DSMRayTracing/base/Power-inl.h"
+#include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/ray/MediumShading.h"
 
@@ -15,8 +16,6 @@
 
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/vec3.hpp>
-
-#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -34,31 +33,28 @@ public:
   using Mask = hn::Mask<F>;
   using NumberTag = hn::RebindToSigned<F>;
   using Numbers = hn::Vec<NumberTag>;
-  static constexpr int Width = static_cast<int>(hn::MaxLanes(F()));
 
   /// Finds the gradients at places in cells of a brick whose samples have a border: what CellNeighbourhood::GetGradient
-  /// finds. `known`: the samples at the corners, or null.
-  static HWY_INLINE void FindGradients(const MediumBrick& brick, const Vector cell[3],
-    const Vector within[3], const Vector* known, Vector gradient[3])
+  /// finds.
+  static HWY_INLINE void FindGradients(
+    const MediumBrick& brick, const Vector cell[3], const Vector within[3], Vector gradient[3])
   {
     const F tag;
     const int strides[3] = { 1, brick.Row, brick.Slice };
     const auto* const samples = static_cast<const float*>(brick.Samples);
     const Vector row = hn::Mul(cell[1], hn::Set(tag, static_cast<float>(strides[1])));
     const Vector slice = hn::Mul(cell[2], hn::Set(tag, static_cast<float>(strides[2])));
-    HWY_ALIGN std::int32_t offsets[Width];
-    hn::Store(
-      hn::ConvertTo(NumberTag(), hn::Add(hn::Add(cell[0], row), slice)), NumberTag(), offsets);
-    const Numbers from = hn::Load(NumberTag(), offsets);
-    const auto load = [&](int offset) { return hn::GatherIndex(tag, samples + offset, from); };
+    const Numbers from = hn::ConvertTo(NumberTag(), hn::Add(hn::Add(cell[0], row), slice));
     const auto mix = [](Vector a, Vector b, Vector part)
     { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
-    Vector corners[8];
-    for (int corner = 0; corner < 8; ++corner)
+    // Rows along x through the corners, from before the cell to behind it: y + 2 z.
+    Vector rows[4][4];
+    for (int number = 0; number < 4; ++number)
     {
-      corners[corner] = known
-        ? known[corner]
-        : load((corner & 1) + (corner >> 1 & 1) * strides[1] + (corner >> 2) * strides[2]);
+      const float* const first =
+        samples + (number & 1) * strides[1] + (number >> 1) * strides[2] - 1;
+      GatherPairs<F>(first, from, rows[number][0], rows[number][1]);
+      GatherPairs<F>(first + 2, from, rows[number][2], rows[number][3]);
     }
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -66,29 +62,42 @@ public:
       const int v = axis == 2 ? 1 : 2;
       const auto interpolate = [&](Vector a, Vector b, Vector c, Vector d)
       { return mix(mix(a, b, within[u]), mix(c, d, within[u]), within[v]); };
-      const auto getPlane = [&](int plane)
+      // Planes from before the cell to behind it.
+      Vector planes[4];
+      for (int plane = 0; plane < 4; ++plane)
       {
-        const int first = plane << axis;
-        return interpolate(corners[first], corners[first + (1 << u)], corners[first + (1 << v)],
-          corners[first + (1 << u) + (1 << v)]);
-      };
-      const auto loadPlane = [&](int plane)
-      {
-        const int first = plane * strides[axis];
-        return interpolate(load(first), load(first + strides[u]), load(first + strides[v]),
-          load(first + strides[u] + strides[v]));
-      };
-      const Vector lower = getPlane(0);
-      const Vector upper = getPlane(1);
+        if (axis == 0)
+        {
+          planes[plane] =
+            interpolate(rows[0][plane], rows[1][plane], rows[2][plane], rows[3][plane]);
+          continue;
+        }
+        Vector edges[4];
+        for (int side = 0; side < 2; ++side)
+        {
+          if (plane == 1 || plane == 2)
+          {
+            const Vector* const own = rows[(plane - 1) * axis + side * (3 - axis)];
+            edges[2 * side] = own[1];
+            edges[2 * side + 1] = own[2];
+          }
+          else
+          {
+            GatherPairs<F>(samples + (plane - 1) * strides[axis] + side * strides[3 - axis], from,
+              edges[2 * side], edges[2 * side + 1]);
+          }
+        }
+        planes[plane] = interpolate(edges[0], edges[1], edges[2], edges[3]);
+      }
       // Next to samples that are not finite, the difference of two.
       const auto goOn = [&](Vector beyond, Vector near, Vector other)
       {
         const Mask isFinite = hn::Eq(hn::Sub(beyond, beyond), hn::Zero(tag));
         return hn::IfThenElse(isFinite, beyond, hn::Sub(hn::Add(near, near), other));
       };
-      const Vector before = goOn(loadPlane(-1), lower, upper);
-      const Vector behind = goOn(loadPlane(2), upper, lower);
-      gradient[axis] = mix(hn::Sub(upper, before), hn::Sub(behind, lower), within[axis]);
+      const Vector before = goOn(planes[0], planes[1], planes[2]);
+      const Vector behind = goOn(planes[3], planes[2], planes[1]);
+      gradient[axis] = mix(hn::Sub(planes[2], before), hn::Sub(behind, planes[1]), within[axis]);
     }
   }
 

@@ -63,6 +63,8 @@ public:
   /// Error of the light of a unit of length, if a ray through the node is shaded at one place.
   const float* Glare;
   ///@}
+  /// For each macrocell that is seen: bit x + 4 y + 16 z is set where a value of that cell may be visible.
+  const std::uint64_t* SeenCells;
 
   virtual void Describe(int node) = 0;
 

@@ -5,8 +5,10 @@
 #include "DSMBricks/layout/BrickBends.h"
 #include "DSMBricks/layout/GridPlanes.h"
 #include "DSMBricks/layout/VoxelBrick.h"
+#include "DSMCore/base/Block.h"
 #include "DSMRayTracing/field/lattice/MacrocellKernel.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
+#include "DSMRayTracing/field/lattice/RecentBricks.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumShading.h"
 
@@ -25,19 +27,20 @@ namespace rt
 /// Memory of a worker for the brick that it is in.
 struct MediumBrickMemory
 {
-  std::vector<float> Samples;
-  /// The bricks with borders that rays went through last, by their ids.
-  static constexpr std::size_t BorderedBricks = 64;
-  struct Bordered
+  /// See MediumBrick.
+  struct Nodes
   {
-    std::int64_t Id = -1;
-    std::vector<float> Samples;
+    std::vector<float> Error;
+    std::vector<float> Change;
+    std::vector<float> Deep;
+    std::vector<float> Glare;
+    std::vector<std::uint64_t> SeenCells;
   };
-  std::vector<Bordered> Bordereds;
-  std::vector<float> Error;
-  std::vector<float> Change;
-  std::vector<float> Deep;
-  std::vector<float> Glare;
+  static constexpr std::size_t DescribedBricks = 1024;
+
+  std::vector<float> Samples;
+  RecentBricks<std::vector<float>> Bordered;
+  RecentBricks<Nodes> Described;
   std::vector<float> Planes[3];
   std::vector<float> Inverse[3];
   /// Places of the samples of the brick, with one more on each side; null: none.
@@ -51,9 +54,9 @@ class TypedMediumBrick final : public MediumBrick
 {
 public:
   /// `planes`: of a rectilinear grid, or null; `origin`: the brick's first cell there.
-  TypedMediumBrick(const bricks::VoxelBrick<T>& brick, const TransferFunction& function,
-    bool isNearest, const bricks::GridPlanes* planes, const double origin[3],
-    const MacrocellKernel& kernel, MediumBrickMemory& memory)
+  TypedMediumBrick(dsm::BlockId id, const bricks::VoxelBrick<T>& brick,
+    const TransferFunction& function, bool isNearest, const bricks::GridPlanes* planes,
+    const double origin[3], const MacrocellKernel& kernel, MediumBrickMemory& memory)
     : Brick(brick)
     , Function(function)
     , Grid(planes)
@@ -77,15 +80,22 @@ public:
       this->SetPlanes(axis);
     }
     this->FirstMacrocell = parts;
-    const auto nodes = static_cast<std::size_t>(parts + macrocells);
-    memory.Error.assign(nodes, Unknown);
-    memory.Change.resize(std::max(memory.Change.size(), nodes));
-    memory.Deep.resize(memory.Change.size());
-    memory.Glare.resize(memory.Change.size());
-    this->Error = memory.Error.data();
-    this->Change = memory.Change.data();
-    this->Deep = memory.Deep.data();
-    this->Glare = memory.Glare.data();
+    memory.Described.SetCount(MediumBrickMemory::DescribedBricks);
+    this->Nodes = &memory.Described.Get(id,
+      [=](MediumBrickMemory::Nodes& own)
+      {
+        const auto nodes = static_cast<std::size_t>(parts + macrocells);
+        own.Error.assign(nodes, Unknown);
+        own.Change.resize(nodes);
+        own.Deep.resize(nodes);
+        own.Glare.resize(nodes);
+        own.SeenCells.resize(static_cast<std::size_t>(macrocells));
+      });
+    this->Error = this->Nodes->Error.data();
+    this->Change = this->Nodes->Change.data();
+    this->Deep = this->Nodes->Deep.data();
+    this->Glare = this->Nodes->Glare.data();
+    this->SeenCells = this->Nodes->SeenCells.data();
     this->SetSamples();
   }
 
@@ -102,14 +112,24 @@ public:
     if (!(values.Min <= values.Max) ||
       !this->Function.IsSeen(static_cast<double>(values.Min), static_cast<double>(values.Max)))
     {
-      this->Memory.Error[at] = Unseen;
+      this->Nodes->Error[at] = Unseen;
       return;
+    }
+    if (!isPart)
+    {
+      const std::uint64_t cells = this->FindSeenCells(place, values);
+      this->Nodes->SeenCells[static_cast<std::size_t>(number)] = cells;
+      if (cells == 0)
+      {
+        this->Nodes->Error[at] = Unseen;
+        return;
+      }
     }
     const TransferFunction::Behavior behavior =
       this->Function.FindBehavior(this->Function.GetPlace(static_cast<double>(values.Min)),
         this->Function.GetPlace(static_cast<double>(values.Max)));
-    this->Memory.Change[at] = static_cast<float>(behavior.Change);
-    this->Memory.Deep[at] = static_cast<float>(behavior.Extinction * behavior.Tinge);
+    this->Nodes->Change[at] = static_cast<float>(behavior.Change);
+    this->Nodes->Deep[at] = static_cast<float>(behavior.Extinction * behavior.Tinge);
     double bend = std::numeric_limits<double>::infinity();
     if (this->IsNearest)
     {
@@ -123,20 +143,20 @@ public:
     {
       bend = this->FindStretchedBend(place);
     }
-    this->Memory.Error[at] = static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
+    this->Nodes->Error[at] = static_cast<float>(behavior.Change * this->Function.GetScale() * bend);
     // How far normals turn in the node, at most: its second differences beside its first.
     const double range = static_cast<double>(values.Max) - static_cast<double>(values.Min);
     const double edge = isPart ? PartCells : MacrocellCells;
     const double turn = 1.6 * edge * edge * bend / range;
-    this->Memory.Glare[at] =
+    this->Nodes->Glare[at] =
       static_cast<float>(behavior.Extinction * std::min(1.0, 0.125 * turn * turn));
-    if (std::isnan(this->Memory.Glare[at])) // values are all the same
+    if (std::isnan(this->Nodes->Glare[at])) // values are all the same
     {
-      this->Memory.Glare[at] = 0.0f;
+      this->Nodes->Glare[at] = 0.0f;
     }
-    if (std::isnan(this->Memory.Error[at])) // no change, of a bend that is not known
+    if (std::isnan(this->Nodes->Error[at])) // no change, of a bend that is not known
     {
-      this->Memory.Error[at] = std::numeric_limits<float>::infinity();
+      this->Nodes->Error[at] = std::numeric_limits<float>::infinity();
     }
   }
 
@@ -247,6 +267,61 @@ private:
     return all;
   }
 
+  /// MediumBrick::SeenCells of a macrocell with these values.
+  std::uint64_t FindSeenCells(
+    const std::array<int, 3>& macrocell, const bricks::MacrocellRange<T>& values) const
+  {
+    const auto getBin = [&](T value)
+    { return this->Function.GetBin(this->Function.GetPlace(static_cast<double>(value))); };
+    if (this->Function.AreAllBinsSeen(getBin(values.Min), getBin(values.Max)))
+    {
+      return ~std::uint64_t{ 0 };
+    }
+    constexpr int points = MacrocellCells + 1;
+    int first[3];
+    int counts[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      first[axis] = MacrocellCells * macrocell[static_cast<std::size_t>(axis)];
+      counts[axis] = std::min(MacrocellCells, this->Cells[axis] - first[axis]);
+    }
+    // Of edges along x, then of faces.
+    std::int16_t least[points][points][MacrocellCells];
+    std::int16_t most[points][points][MacrocellCells];
+    for (int z = 0; z <= counts[2]; ++z)
+    {
+      for (int y = 0; y <= counts[1]; ++y)
+      {
+        const T* const row =
+          this->Brick.GetSamples() + this->Brick.GetOffset(first[0], first[1] + y, first[2] + z);
+        auto before = static_cast<std::int16_t>(getBin(row[0]));
+        for (int x = 0; x < counts[0]; ++x)
+        {
+          const auto next = static_cast<std::int16_t>(getBin(row[x + 1]));
+          least[z][y][x] = std::min(before, next);
+          most[z][y][x] = std::max(before, next);
+          before = next;
+        }
+      }
+    }
+    std::uint64_t seen = 0;
+    for (int z = 0; z < counts[2]; ++z)
+    {
+      for (int y = 0; y < counts[1]; ++y)
+      {
+        for (int x = 0; x < counts[0]; ++x)
+        {
+          const int low = std::min(
+            { least[z][y][x], least[z][y + 1][x], least[z + 1][y][x], least[z + 1][y + 1][x] });
+          const int high = std::max(
+            { most[z][y][x], most[z][y + 1][x], most[z + 1][y][x], most[z + 1][y + 1][x] });
+          seen |= std::uint64_t{ this->Function.IsAnyBinSeen(low, high) } << (x + 4 * (y + 4 * z));
+        }
+      }
+    }
+    return seen;
+  }
+
   /// How far values along a ray through a rectilinear macrocell may be from a quadratic: trilinear values are an eighth
   /// of how much they bend in a cell from a smooth curve. That curve itself is taken for up to three times as far.
   double FindStretchedBend(const std::array<int, 3>& macrocell) const
@@ -277,6 +352,7 @@ private:
   const bricks::GridPlanes* Grid;
   const MacrocellKernel& Kernel;
   MediumBrickMemory& Memory;
+  MediumBrickMemory::Nodes* Nodes;
   std::size_t First[3]; ///< the brick's first cell
 };
 

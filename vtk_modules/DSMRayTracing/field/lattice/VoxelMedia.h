@@ -65,8 +65,8 @@ protected:
     const typename Store::Pin pin =
       this->Blocks.Acquire(this->Self, *field.Voxels->Segment, brick.Id);
     const bricks::VoxelBrick<T> voxels(pin.GetData());
-    TypedMediumBrick<T> medium(
-      voxels, function, light.Nearest, packet.Planes, brick.Lower, this->Kernel.Macrocells, memory);
+    TypedMediumBrick<T> medium(brick.Id, voxels, function, light.Nearest, packet.Planes,
+      brick.Lower, this->Kernel.Macrocells, memory);
     if (light.Shading)
     {
       memory.Shading = *light.Shading;
