@@ -43,8 +43,7 @@ MediumLighting::MediumLighting(const SceneTracers& tracers, const Scene& scene)
 std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look) const
 {
   const LightTransport& transport = this->World.Transport;
-  if (transport.Shadows || transport.AmbientOcclusionSamples > 0 ||
-    !transport.Surroundings.IsBlack())
+  if (transport.AmbientOcclusionSamples > 0 || !transport.Surroundings.IsBlack())
   {
     return std::nullopt;
   }
@@ -53,6 +52,7 @@ std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look)
   shading.SpecularPower = surface.SpecularPower;
   shading.HasHighlights = surface.Specular > 0.0f;
   shading.TwoSided = transport.TwoSided;
+  shading.HasShadows = transport.Shadows;
   for (const Light& lamp : this->World.Lights)
   {
     if (!std::holds_alternative<DirectionalLight>(lamp.Kind))
@@ -65,6 +65,77 @@ std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look)
       surface.Ambient * (lamp.IsLoneHeadlight ? glm::vec3(1.0f) : lamp.AmbientColor);
   }
   return shading;
+}
+
+void MediumLighting::FindArriving(
+  const Ray* rays, RayMask wanted, LightPath* const* paths, MediumLight& light) const
+{
+  const std::size_t lamps = this->World.Lights.size();
+  light.Arriving.assign(MediumLight::GetArriving(lamps, 0, 0, 0), 1.0f);
+  struct Asked
+  {
+    int Ray;
+    int Place;
+    double T;
+  };
+  std::vector<Asked> asked;
+  for (int place = 0; place < MediumLight::Places; ++place)
+  {
+    ForEachRay(wanted,
+      [&](int ray)
+      {
+        double t = light.Place[place][ray];
+        // What hardly shows anything looks once.
+        t =
+          place == 0 && std::isinf(t) && !std::isinf(light.First[ray]) ? light.GetHalfWay(ray) : t;
+        if (!std::isinf(t))
+        {
+          asked.push_back({ ray, place, t });
+        }
+      });
+  }
+  for (std::size_t lamp = 0; lamp < lamps; ++lamp)
+  {
+    for (std::size_t first = 0; first < asked.size(); first += MaxRays)
+    {
+      const auto count = static_cast<int>(std::min<std::size_t>(MaxRays, asked.size() - first));
+      Ray sent[MaxRays];
+      for (int index = 0; index < count; ++index)
+      {
+        const Asked& own = asked[first + static_cast<std::size_t>(index)];
+        LightPath& path = *paths[own.Ray];
+        sent[index] =
+          this->AimAtLamp(lamp, rays[own.Ray].Origin + own.T * rays[own.Ray].Direction, path);
+        ++path.LightRays;
+      }
+      glm::dvec3 transmittances[MaxRays];
+      this->Transmittances.Find(sent, count, transmittances);
+      for (int index = 0; index < count; ++index)
+      {
+        const Asked& own = asked[first + static_cast<std::size_t>(index)];
+        for (int channel = 0; channel < 3; ++channel)
+        {
+          // Places that the ray does not come to have the light of the last one.
+          for (int place = own.Place; place < MediumLight::Places; ++place)
+          {
+            light.Arriving[MediumLight::GetArriving(lamp, channel, place, own.Ray)] =
+              static_cast<float>(transmittances[index][channel]);
+          }
+        }
+      }
+    }
+  }
+}
+
+Ray MediumLighting::AimAtLamp(std::size_t lamp, const glm::dvec3& position, LightPath& path) const
+{
+  const LightSample light = this->World.Lights[lamp].Sample(position, path.Random);
+  Ray ray;
+  ray.Origin = position;
+  ray.Direction = light.Aim(this->World.Transport.LightRadius, path.Random);
+  ray.Min = 0.0;
+  ray.Max = light.Distance;
+  return ray;
 }
 
 void MediumLighting::Shine(
@@ -224,17 +295,12 @@ void MediumLighting::LookAround(int number, const Ray* rays, RayMask wanted,
 void MediumLighting::LookToLamps(int number, const Ray* rays, RayMask wanted,
   LightPath* const* paths, std::vector<Places>& places) const
 {
-  const double radius = this->World.Transport.LightRadius;
-  for (const Light& lamp : this->World.Lights)
+  for (std::size_t lamp = 0; lamp < this->World.Lights.size(); ++lamp)
   {
     this->Send(
       number, rays, wanted, paths, places,
       [&](Ray& ray, LightPath& path, const glm::dvec3&)
-      {
-        const LightSample light = lamp.Sample(ray.Origin, path.Random);
-        ray.Direction = light.Aim(radius, path.Random);
-        ray.Max = light.Distance;
-      },
+      { ray = this->AimAtLamp(lamp, ray.Origin, path); },
       [](Place& place, const glm::dvec3& transmittance) { place.Lamps.push_back(transmittance); });
   }
 }

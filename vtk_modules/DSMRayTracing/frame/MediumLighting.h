@@ -12,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,10 @@ public:
 
   /// Returns the light that shades a medium of that look while rays march through it; nothing, if pieces are needed.
   std::optional<MediumShading> FindShading(const MediumLook& look) const;
+
+  /// Finds MediumLight::Arriving at the places of the rays that are `wanted`; each has a path.
+  void FindArriving(
+    const Ray* rays, RayMask wanted, LightPath* const* paths, MediumLight& light) const;
 
   /// Gives the pieces that have a look the color that they have in that light, of those of the rays that are `wanted`;
   /// each has a path.
@@ -63,6 +68,9 @@ private:
     std::vector<Places>& places) const;
   void LookToLamps(int number, const Ray* rays, RayMask wanted, LightPath* const* paths,
     std::vector<Places>& places) const;
+
+  /// A ray to a lamp.
+  Ray AimAtLamp(std::size_t lamp, const glm::dvec3& position, LightPath& path) const;
 
   /// The amounts of a piece, as they are seen from there.
   Lanes GetLit(const MediumPiece& piece, const glm::dvec3& position, LightPath& path,

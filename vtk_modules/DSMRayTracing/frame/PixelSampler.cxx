@@ -260,7 +260,17 @@ void PixelSampler::AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted,
   LightPath* const* paths, RayMask cut, MediumLight& light) const
 {
   this->Media.March(rays, wanted, beam, light,
-    [&](MediumLight& gathered) { this->LitMedia.Shine(rays, wanted, paths, gathered); });
+    [&](MediumLight& gathered)
+    {
+      if (gathered.LocatesPlaces)
+      {
+        this->LitMedia.FindArriving(rays, wanted, paths, gathered);
+      }
+      else
+      {
+        this->LitMedia.Shine(rays, wanted, paths, gathered);
+      }
+    });
   ForEachRay(wanted,
     [&](int index)
     {

@@ -99,6 +99,10 @@ public:
       {
         this->Transmittance[ray] = 1.0;
         this->Middle[ray] = std::numeric_limits<double>::infinity();
+        for (auto& place : this->Place)
+        {
+          place[ray] = std::numeric_limits<double>::infinity();
+        }
         this->Sum[0][ray] = 0.0;
         this->Sum[1][ray] = 0.0;
         this->Sum[2][ray] = 0.0;
@@ -202,6 +206,20 @@ public:
   bool KeepsValues = false;
   /// Errors that are as small as MediumTolerance says when they are multiplied by this: 1 for what a pixel shows.
   double ErrorFactor = 1.0;
+  /// True: finds Place.
+  bool LocatesPlaces = false;
+  /// T where the opacity of what a ray has met reaches (place + 1/2) / Places; infinite: nowhere.
+  static constexpr int Places = 4;
+  double Place[Places][MaxRays];
+  /// The part of a lamp's light that arrives at these, for MediumShading::HasShadows: GetArriving.
+  std::vector<float> Arriving;
+  static std::size_t GetArriving(std::size_t lamp, int channel, int place, int ray)
+  {
+    return ((lamp * 3 + static_cast<std::size_t>(channel)) * Places +
+             static_cast<std::size_t>(place)) *
+      MaxRays +
+      static_cast<std::size_t>(ray);
+  }
   /// Null: pieces are not shaded while rays march, or later.
   const MediumShading* Shading = nullptr;
   ///@{

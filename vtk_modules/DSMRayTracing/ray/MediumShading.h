@@ -10,7 +10,7 @@
 namespace rt
 {
 
-/// The light of lamps far away, of which nothing stands in the way: what a medium needs to be shaded while rays march
+/// The light of lamps far away: what a medium needs to be shaded while rays march
 /// through it, without pieces that are described later.
 struct MediumShading
 {
@@ -26,6 +26,7 @@ struct MediumShading
   float SpecularPower = 1.0f;
   bool HasHighlights = false;
   bool TwoSided = true;
+  bool HasShadows = false; ///< MediumLight::Arriving tells what arrives of the light
   /// From gradients in the space of the bricks to normals against them in world space, which are not of unit length.
   glm::mat3 ToNormal{ 1.0f };
 };

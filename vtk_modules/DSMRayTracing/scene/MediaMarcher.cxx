@@ -147,6 +147,19 @@ void MediaMarcher::March(const MediumTracer& medium, bool isDescribed, const Ray
   }
 }
 
+void MediaMarcher::LocatePlaces(
+  const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const
+{
+  light.Begin(rays, wanted);
+  light.KeepsPieces = false;
+  light.Shading = nullptr;
+  light.LocatesPlaces = true;
+  light.ErrorFactor = 1.0 / MediumTolerance::Shadow;
+  ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam].get() : nullptr;
+  March(*this->Media.front(), false, rays, wanted, own, light);
+  light.ErrorFactor = 1.0;
+}
+
 void MediaMarcher::Gather(
   const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const
 {

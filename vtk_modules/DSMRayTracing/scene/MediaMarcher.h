@@ -41,11 +41,17 @@ public:
   /// Finds the light that the `wanted` rays of a batch receive from media in [ray.Min, ray.Max].
   /// `beam`: contains all of the rays; null: the rays have any direction. `shine(light)` is called
   /// in between if media are lit: it gives the pieces that have a look their color in the light
-  /// that arrives.
+  /// that arrives; or, if MediumLight::LocatesPlaces, finds MediumLight::Arriving.
   template <class Shine>
   void March(
     const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light, const Shine& shine) const
   {
+    if (this->Shading && this->Shading->HasShadows)
+    {
+      this->LocatePlaces(rays, wanted, beam, light);
+      shine(light);
+      light.LocatesPlaces = false;
+    }
     this->Gather(rays, wanted, beam, light);
     if (this->IsLit)
     {
@@ -65,6 +71,8 @@ private:
   /// Takes rays through one medium, up to its description, if it `isDescribed`.
   static void March(const MediumTracer& medium, bool isDescribed, const Ray* rays, RayMask wanted,
     ObjectBeam* beam, MediumLight& light);
+  /// Finds MediumLight::Place of the rays.
+  void LocatePlaces(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const;
   /// Takes rays through all, each by itself.
   void Gather(const Ray* rays, RayMask wanted, SceneBeam* beam, MediumLight& light) const;
   /// Sums up pieces that were kept.

@@ -105,6 +105,7 @@ public:
     this->Transmittance = load(this->Light.Transmittance);
     this->Nearest = hn::Set(tag, std::numeric_limits<float>::infinity());
     this->Farthest = hn::Neg(this->Nearest);
+    std::fill_n(this->Place, MediumLight::Places, this->Nearest);
   }
   /// Puts back the sums of `lanes`.
   void PutRays(std::uint32_t lanes)
@@ -118,9 +119,9 @@ public:
     hn::Store(this->Transmittance, tag, sums[3]);
     hn::Store(this->Nearest, tag, sums[4]);
     hn::Store(this->Farthest, tag, sums[5]);
-    for (; lanes != 0; lanes &= lanes - 1)
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1)
     {
-      const int lane = __builtin_ctz(lanes);
+      const int lane = __builtin_ctz(left);
       const std::size_t ray = this->Ray[lane];
       for (int channel = 0; channel < 3; ++channel)
       {
@@ -132,6 +133,10 @@ public:
         this->Light.First[ray] = std::min(this->Light.First[ray], this->GetT(lane, sums[4][lane]));
         this->Light.Last[ray] = this->GetT(lane, sums[5][lane]);
       }
+    }
+    if (this->Light.LocatesPlaces)
+    {
+      this->PutPlaces(lanes);
     }
   }
 
@@ -155,6 +160,13 @@ public:
     const Vector opacity = hn::Sub(this->Before, this->Transmittance);
     return hn::IfThenElse(hn::Gt(opacity, hn::Set(tag, 1e-6f)),
       hn::Div(this->Moment, hn::Max(opacity, hn::Set(tag, 1e-6f))), middle);
+  }
+  /// How opaque all in front of its middle is.
+  Vector GetOpacity() const
+  {
+    const F tag;
+    return hn::Sub(
+      hn::Set(tag, 1.0f), hn::Mul(hn::Set(tag, 0.5f), hn::Add(this->Before, this->Transmittance)));
   }
   /// Adds it, its emission times a factor, and its opacity times another.
   void EndShaded(const Vector ofEmission[3], const Vector ofOpacity[3])
@@ -216,6 +228,39 @@ private:
   static constexpr float MostPieces = 64.0f;
   static constexpr float BendFactor = static_cast<float>(1.0 / (32.0 * MediumTolerance::Depth));
   static constexpr float ColorFactor = static_cast<float>(1.0 / (12.0 * MediumTolerance::Color));
+
+  void PutPlaces(std::uint32_t lanes)
+  {
+    HWY_ALIGN float found[Width];
+    for (int number = 0; number < MediumLight::Places; ++number)
+    {
+      hn::Store(this->Place[number], F(), found);
+      for (std::uint32_t left = lanes; left != 0; left &= left - 1)
+      {
+        const int lane = __builtin_ctz(left);
+        if (found[lane] < std::numeric_limits<float>::infinity())
+        {
+          this->Light.Place[number][this->Ray[lane]] = this->GetT(lane, found[lane]);
+        }
+      }
+    }
+  }
+  /// Finds MediumLight::Place in pieces that light gets through up to `after`, which is taken for linear.
+  HWY_INLINE void FindPlaces(const Ways& ways, Vector after, Mask there)
+  {
+    const F tag;
+    const Vector before = this->Transmittance;
+    const Vector way = hn::Div(hn::Sub(ways.End, ways.Begin),
+      hn::Max(hn::Sub(before, after), hn::Set(tag, std::numeric_limits<float>::min())));
+    for (int number = 0; number < MediumLight::Places; ++number)
+    {
+      const Vector level = hn::Set(
+        tag, 1.0f - (static_cast<float>(number) + 0.5f) / static_cast<float>(MediumLight::Places));
+      const Mask here = hn::And(there, hn::And(hn::Gt(before, level), hn::Le(after, level)));
+      const Vector place = hn::Add(ways.Begin, hn::Mul(hn::Sub(before, level), way));
+      this->Place[number] = hn::IfThenElse(here, place, this->Place[number]);
+    }
+  }
 
   double GetT(int lane, float place) const
   {
@@ -507,6 +552,10 @@ private:
     {
       this->Locate(ways, amount[3], halved);
     }
+    if (this->Light.LocatesPlaces)
+    {
+      this->FindPlaces(ways, after, there);
+    }
     if (this->Light.KeepsPieces)
     {
       this->Keep(ways, amount, passed, GetMaskBits(tag, there));
@@ -637,6 +686,7 @@ private:
   Vector Moment; ///< of opacity
   Vector Before; ///< transmittance
   ///@}
+  Vector Place[MediumLight::Places];
   Vector Nearest; ///< where there is anything first
   Vector Farthest;
   ///@{

@@ -100,6 +100,7 @@ private:
     Vector ToViewer[3];
     Vector T;
     Vector Cell[3];
+    Numbers Ray; ///< in the packet
   };
 
   std::uint32_t MarchSome(int first, std::uint32_t some)
@@ -227,6 +228,7 @@ private:
     rays.Length = DemoteLanes<F>([&](int part)
       { return hn::Mul(load(this->Light.Length, part), hn::Load(doubles, distance + part)); });
     rays.T = zero;
+    rays.Ray = hn::Iota(NumberTag(), std::int32_t{ first });
   }
 
   /// Where planes are, of the numbers that they have in the brick.
@@ -610,8 +612,30 @@ private:
     Shading::FindGradients(this->Brick, places.Cell, places.Within, gradient);
     Vector ofEmission[3];
     Vector ofOpacity[3];
-    Shading::Shade(*this->Brick.Shading, gradient, rays.ToViewer, ofEmission, ofOpacity);
+    const auto arrives = [&](std::size_t lamp, int channel)
+    { return this->FindArriving(rays, lamp, channel); };
+    Shading::Shade(*this->Brick.Shading, gradient, rays.ToViewer, arrives, ofEmission, ofOpacity);
     this->Ways.EndShaded(ofEmission, ofOpacity);
+  }
+
+  /// The part of a lamp's light that arrives at what is shaded: between two places of MediumLight::Place.
+  HWY_INLINE Vector FindArriving(const Rays& rays, std::size_t lamp, int channel) const
+  {
+    const F tag;
+    const NumberTag numbers;
+    constexpr auto places = static_cast<float>(MediumLight::Places);
+    const Vector place = hn::Min(
+      hn::Max(hn::Sub(hn::Mul(this->Ways.GetOpacity(), hn::Set(tag, places)), hn::Set(tag, 0.5f)),
+        hn::Zero(tag)),
+      hn::Set(tag, places - 1.0f));
+    const Vector first = hn::Min(hn::Floor(place), hn::Set(tag, places - 2.0f));
+    const float* const all =
+      this->Light.Arriving.data() + MediumLight::GetArriving(lamp, channel, 0, 0);
+    const Numbers at = hn::Add(
+      hn::Mul(hn::ConvertTo(numbers, first), hn::Set(numbers, std::int32_t{ MaxRays })), rays.Ray);
+    const Vector before = hn::GatherIndex(tag, all, at);
+    const Vector behind = hn::GatherIndex(tag, all + MaxRays, at);
+    return hn::Add(before, hn::Mul(hn::Sub(place, first), hn::Sub(behind, before)));
   }
 
   /// Along a ray in a cell, values are a cubic.

@@ -17,6 +17,8 @@
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
+
 HWY_BEFORE_NAMESPACE();
 namespace rt
 {
@@ -102,9 +104,10 @@ public:
   }
 
   /// Finds the factors of emission and opacity (MediumPieces::EndShaded), as MediumLighting shades. Changes the size of
-  /// the gradients.
+  /// the gradients. `arrives(lamp, channel)`: the part of a lamp's light that does; called if there are shadows.
+  template <class Arrives>
   static HWY_INLINE void Shade(const MediumShading& shading, Vector gradient[3],
-    const Vector toViewer[3], Vector ofEmission[3], Vector ofOpacity[3])
+    const Vector toViewer[3], const Arrives& arrives, Vector ofEmission[3], Vector ofOpacity[3])
   {
     const F tag;
     const Vector zero = hn::Zero(tag);
@@ -144,16 +147,29 @@ public:
     const Vector towardViewer = dot(normal, toViewer);
     set(shading.Ambient, ofEmission);
     set(shading.AmbientOpacity, ofOpacity);
-    for (const MediumShading::Lamp& lamp : shading.Lamps)
+    for (std::size_t number = 0; number < shading.Lamps.size(); ++number)
     {
+      const MediumShading::Lamp& lamp = shading.Lamps[number];
+      Vector diffuse[3];
+      Vector specular[3];
+      set(lamp.Diffuse, diffuse);
+      set(lamp.Specular, specular);
+      if (shading.HasShadows)
+      {
+        for (int channel = 0; channel < 3; ++channel)
+        {
+          const Vector arriving = arrives(number, channel);
+          diffuse[channel] = hn::Mul(diffuse[channel], arriving);
+          specular[channel] = hn::Mul(specular[channel], arriving);
+        }
+      }
       Vector direction[3];
       set(lamp.Direction, direction);
       const Vector along = hn::Neg(dot(normal, direction));
       const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
       for (int channel = 0; channel < 3; ++channel)
       {
-        ofEmission[channel] =
-          hn::Add(ofEmission[channel], hn::Mul(cosine, hn::Set(tag, lamp.Diffuse[channel])));
+        ofEmission[channel] = hn::Add(ofEmission[channel], hn::Mul(cosine, diffuse[channel]));
       }
       if (shading.HasHighlights)
       {
@@ -163,8 +179,7 @@ public:
         const Vector power = hn::IfThenElseZero(shines, GetPower(highlight, shading.SpecularPower));
         for (int channel = 0; channel < 3; ++channel)
         {
-          ofOpacity[channel] =
-            hn::Add(ofOpacity[channel], hn::Mul(power, hn::Set(tag, lamp.Specular[channel])));
+          ofOpacity[channel] = hn::Add(ofOpacity[channel], hn::Mul(power, specular[channel]));
         }
       }
     }
