@@ -237,6 +237,18 @@ void TransferFunction::SetTable()
     }
   }
   this->Floats.Begin.front() = -std::numeric_limits<float>::infinity();
+  this->Floats.SeenFirst = std::numeric_limits<float>::infinity();
+  this->Floats.SeenLast = -std::numeric_limits<float>::infinity();
+  for (std::size_t part = 0; part < this->Parts.size(); ++part)
+  {
+    if (this->SeenBefore[part + 1] > this->SeenBefore[part])
+    {
+      this->Floats.SeenFirst = std::min(this->Floats.SeenFirst, this->Floats.Begin[part]);
+      this->Floats.SeenLast = part + 1 < this->Parts.size()
+        ? this->Floats.Begin[part + 1]
+        : std::numeric_limits<float>::infinity();
+    }
+  }
   this->Floats.First = static_cast<float>(this->Begin);
   // Whatever rounding does to the bin of a place.
   constexpr double slack = 1e-3;

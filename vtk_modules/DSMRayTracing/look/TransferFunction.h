@@ -64,6 +64,9 @@ public:
     int Steps;
     /// For each part: red, green, blue and extinction where it begins, then their growth in a bin.
     std::vector<float> Rows;
+    /// No place outside of these two is visible.
+    float SeenFirst;
+    float SeenLast;
   };
   const Table& GetTable() const { return this->Floats; }
 

@@ -12,6 +12,7 @@
 #include "DSMRayTracing/base/Transmittance-inl.h"
 #include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
+#include "DSMRayTracing/field/cells/FunctionParts-inl.h"
 #include "DSMRayTracing/look/TransferFunction.h"
 #include "DSMRayTracing/ray/MediumLight.h"
 
@@ -68,15 +69,12 @@ public:
   /// Keeps references.
   MediumPieces(const TransferFunction& function, MediumLight& light)
     : Function(function)
-    , Table(function.GetTable())
+    , Parts(function)
     , Light(light)
     , JoinedLength(static_cast<float>(light.JoinedLength))
     , ErrorFactor(
         static_cast<float>(light.ErrorFactor * (light.IsExact ? MediumTolerance::Exact : 1.0)))
   {
-    const F tag;
-    this->PartBegin = hn::Set(tag, std::numeric_limits<float>::infinity());
-    this->PartEnd = this->PartBegin;
   }
 
   /// Takes rays `number`[lane], of `lanes` (bits). Begin and End of ways are in a unit `scale`[lane] of T, from
@@ -197,11 +195,16 @@ public:
   {
     const F tag;
     const Vector one = hn::Set(tag, 1.0f);
-    this->GoToParts(ways.First, there);
     Vector least;
     Vector most;
     FindRange(ways, least, most);
-    const Mask simple = hn::And(this->IsInPart(least), this->IsInPart(most));
+    there = hn::And(there, this->Parts.MayBeSeen(least, most));
+    if (hn::AllFalse(tag, there))
+    {
+      return;
+    }
+    this->Parts.GoToParts(ways.First, there);
+    const Mask simple = hn::And(this->Parts.IsInPart(least), this->Parts.IsInPart(most));
     Vector count = this->GetCount(ways, simple, around);
     const std::uint32_t several = GetMaskBits(tag, hn::And(there, hn::Gt(count, one)));
     Behavior behavior = around;
@@ -356,73 +359,36 @@ private:
     };
     const Vector whole = hn::Sub(ways.End, ways.Begin);
     Ways piece;
-    piece.Last = ways.First;
-    piece.End = ways.Begin;
+    piece.First = ways.First;
+    piece.Begin = ways.Begin;
     piece.Length = hn::Mul(ways.Length, part);
     Mask left = there;
-    for (float number = 1.0f; !hn::AllFalse(tag, left); number += 1.0f)
+    Vector number = one;
+    while (!hn::AllFalse(tag, left))
     {
-      const Vector end = hn::Mul(hn::Set(tag, number), part);
-      const Mask isLast = hn::Ge(hn::Set(tag, number), count);
-      piece.First = piece.Last;
-      piece.Begin = piece.End;
-      piece.Middle = evaluate(hn::Mul(hn::Set(tag, number - 0.5f), part));
+      const Vector end = hn::Mul(number, part);
+      const Mask isLast = hn::Ge(number, count);
+      piece.Middle = evaluate(hn::Mul(hn::Sub(number, hn::Set(tag, 0.5f)), part));
       piece.Last = hn::IfThenElse(isLast, ways.Last, evaluate(end));
       piece.End = hn::IfThenElse(isLast, ways.End, hn::Add(ways.Begin, hn::Mul(whole, end)));
-      this->AddPieces(piece, left);
-      left = hn::AndNot(hn::Or(isLast, this->FindDark()), left);
+      // The others wait until as many as possible have a piece that may be seen.
+      const Mask seen =
+        this->Parts.MayBeSeen(hn::Min(hn::Min(piece.First, piece.Last), piece.Middle),
+          hn::Max(hn::Max(piece.First, piece.Last), piece.Middle));
+      const Mask hidden = hn::AndNot(seen, left);
+      const bool isAnyHidden = !hn::AllFalse(tag, hidden);
+      const Mask next = isAnyHidden ? hidden : left;
+      Mask ended = hn::And(isLast, next);
+      if (!isAnyHidden)
+      {
+        this->AddPieces(piece, left);
+        ended = hn::Or(ended, this->FindDark());
+      }
+      left = hn::AndNot(ended, left);
+      piece.First = hn::IfThenElse(next, piece.Last, piece.First);
+      piece.Begin = hn::IfThenElse(next, piece.End, piece.Begin);
+      number = hn::IfThenElse(next, hn::Add(number, one), number);
     }
-  }
-
-  /// The parts of the function that places are in.
-  HWY_INLINE Numbers FindParts(Vector place) const
-  {
-    const F tag;
-    const NumberTag numbers;
-    const Vector first = hn::Set(tag, this->Table.First);
-    const Vector bounded = hn::Min(hn::Max(hn::Sub(place, first), hn::Zero(tag)),
-      hn::Set(tag, static_cast<float>(TransferFunction::Bins - 1)));
-    Numbers part =
-      hn::GatherIndex(numbers, this->Table.Index.data(), hn::ConvertTo(numbers, bounded));
-    for (int step = this->Table.Steps; step-- > 0;)
-    {
-      const Numbers next = hn::Add(part, hn::Set(numbers, std::int32_t{ 1 } << step));
-      const Vector begin = hn::GatherIndex(tag, this->Table.Begin.data(), next);
-      part = hn::IfThenElse(hn::RebindMask(numbers, hn::Le(begin, place)), next, part);
-    }
-    return hn::IfThenElseZero(hn::RebindMask(numbers, hn::Ge(place, first)), part);
-  }
-  Mask IsInPart(Vector place) const
-  {
-    return hn::And(hn::Ge(place, this->PartBegin), hn::Le(place, this->PartEnd));
-  }
-  /// Makes the part of each place the current one of its lane, of those `there`.
-  HWY_INLINE void GoToParts(Vector place, Mask there)
-  {
-    const F tag;
-    const Mask inside = hn::And(hn::Ge(place, this->PartBegin), hn::Lt(place, this->PartEnd));
-    if (hn::AllFalse(tag, hn::AndNot(inside, there)))
-    {
-      return;
-    }
-    const NumberTag numbers;
-    const Numbers part = this->FindParts(place);
-    this->PartBegin = hn::GatherIndex(tag, this->Table.Begin.data(), part);
-    this->PartEnd = hn::GatherIndex(tag, this->Table.Begin.data() + 1, part);
-    const Numbers row = hn::ShiftLeft<3>(part);
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      this->Look[channel] = hn::GatherIndex(tag, this->Table.Rows.data() + channel, row);
-      this->Growth[channel] = hn::GatherIndex(tag, this->Table.Rows.data() + 4 + channel, row);
-    }
-    // Part 0 has no begin, and does not grow.
-    this->From =
-      hn::IfThenElseZero(hn::RebindMask(tag, hn::Gt(part, hn::Zero(numbers))), this->PartBegin);
-  }
-  /// The function at a place of the current part.
-  Vector Evaluate(int channel, Vector place) const
-  {
-    return hn::Add(this->Look[channel], hn::Mul(this->Growth[channel], hn::Sub(place, this->From)));
   }
 
   /// Adds ways, each as one piece.
@@ -433,23 +399,23 @@ private:
     {
       return;
     }
-    this->GoToParts(ways.First, there);
-    const Mask simple = hn::And(this->IsInPart(ways.Middle), this->IsInPart(ways.Last));
+    this->Parts.GoToParts(ways.First, there);
+    const Mask simple = hn::And(this->Parts.IsInPart(ways.Middle), this->Parts.IsInPart(ways.Last));
     // Simpson's rule is exact for cubics.
     const Vector mean = hn::Mul(hn::Set(tag, 1.0f / 6.0f),
       hn::Add(hn::Add(ways.First, ways.Last), hn::Mul(hn::Set(tag, 4.0f), ways.Middle)));
     Vector amount[4];
     for (int channel = 0; channel < 4; ++channel)
     {
-      amount[channel] = this->Evaluate(channel, mean);
+      amount[channel] = this->Parts.Evaluate(channel, mean);
     }
     if (!hn::AllFalse(tag, hn::AndNot(simple, there)))
     {
       const Mask others = hn::AndNot(simple, there);
       Vector front[4];
       Vector back[4];
-      this->GetMeans(ways.First, ways.Middle, others, front);
-      this->GetMeans(ways.Middle, ways.Last, others, back);
+      this->Parts.GetMeans(ways.First, ways.Middle, others, front);
+      this->Parts.GetMeans(ways.Middle, ways.Last, others, back);
       for (int channel = 0; channel < 4; ++channel)
       {
         amount[channel] = hn::IfThenElse(simple, amount[channel],
@@ -461,82 +427,6 @@ private:
       one = hn::Mul(one, ways.Length);
     }
     this->Blend(ways, amount, hn::And(there, hn::Gt(amount[3], hn::Zero(tag))));
-  }
-
-  /// The means of the function between two places, of which the first is in the current part; the part of the second
-  /// becomes the current one.
-  HWY_INLINE void GetMeans(Vector first, Vector last, Mask there, Vector means[4])
-  {
-    const F tag;
-    const Vector half = hn::Set(tag, 0.5f);
-    const Mask inside = this->IsInPart(last);
-    const Vector middle = hn::Mul(half, hn::Add(first, last));
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      means[channel] = this->Evaluate(channel, middle);
-    }
-    const Mask across = hn::AndNot(inside, there);
-    if (hn::AllFalse(tag, across))
-    {
-      return;
-    }
-    // Where the two parts meet, if they do.
-    const Mask rises = hn::Gt(last, first);
-    const Vector node = hn::IfThenElse(rises, this->PartEnd, this->PartBegin);
-    const Vector before = hn::Mul(half, hn::Add(first, node));
-    const Vector way = hn::Div(hn::Set(tag, 1.0f), hn::Sub(last, first));
-    const Vector share = hn::Mul(hn::Sub(node, first), way);
-    Vector old[4];
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      old[channel] = hn::Mul(share, this->Evaluate(channel, before));
-    }
-    this->GoToParts(last, there);
-    const Mask meet = hn::Eq(node, hn::IfThenElse(rises, this->PartBegin, this->PartEnd));
-    const Vector behind = hn::Mul(half, hn::Add(node, last));
-    const Vector rest = hn::Mul(hn::Sub(last, node), way);
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      const Vector both = hn::Add(old[channel], hn::Mul(rest, this->Evaluate(channel, behind)));
-      means[channel] = hn::IfThenElse(inside, means[channel], both);
-    }
-    const std::uint32_t far = GetMaskBits(tag, hn::AndNot(meet, across));
-    if (far != 0)
-    {
-      this->IntegrateParts(first, last, far, means);
-    }
-  }
-  /// The same of some lanes (bits), for any number of parts.
-  HWY_NOINLINE void IntegrateParts(
-    Vector first, Vector last, std::uint32_t lanes, Vector means[4]) const
-  {
-    const F tag;
-    HWY_ALIGN float places[2][Width];
-    HWY_ALIGN float found[4][Width];
-    hn::Store(first, tag, places[0]);
-    hn::Store(last, tag, places[1]);
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      hn::Store(means[channel], tag, found[channel]);
-    }
-    for (; lanes != 0; lanes &= lanes - 1)
-    {
-      const int lane = __builtin_ctz(lanes);
-      const double begin = places[0][lane];
-      const double end = places[1][lane];
-      Lanes slope;
-      const Lanes before = this->Function.Integrate(begin, slope);
-      const Lanes growth =
-        (this->Function.Integrate(end, slope) - before) * Lanes(1.0 / (end - begin));
-      for (int channel = 0; channel < 4; ++channel)
-      {
-        found[channel][lane] = static_cast<float>(growth[channel]);
-      }
-    }
-    for (int channel = 0; channel < 4; ++channel)
-    {
-      means[channel] = hn::Load(tag, found[channel]);
-    }
   }
 
   /// Adds pieces with such emission and depth.
@@ -670,7 +560,7 @@ private:
   }
 
   const TransferFunction& Function;
-  const TransferFunction::Table& Table;
+  FunctionParts<F> Parts;
   MediumLight& Light;
   float JoinedLength;
   float ErrorFactor;
@@ -689,14 +579,6 @@ private:
   Vector Place[MediumLight::Places];
   Vector Nearest; ///< where there is anything first
   Vector Farthest;
-  ///@{
-  /// The current part of the function of each lane.
-  Vector PartBegin;
-  Vector PartEnd;
-  Vector From; ///< Evaluate: place of Look
-  Vector Look[4];
-  Vector Growth[4];
-  ///@}
 };
 
 } // namespace HWY_NAMESPACE

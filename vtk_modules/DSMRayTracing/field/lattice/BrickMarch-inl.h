@@ -12,6 +12,7 @@
 #include "DSMRayTracing/base/VectorLanes-inl.h"
 #include "DSMRayTracing/field/MediumTolerance.h"
 #include "DSMRayTracing/field/cells/MediumPieces-inl.h"
+#include "DSMRayTracing/field/lattice/BrickSamples-inl.h"
 #include "DSMRayTracing/field/lattice/GradientShading-inl.h"
 #include "DSMRayTracing/field/lattice/MediumBrick.h"
 #include "DSMRayTracing/look/TransferFunction.h"
@@ -23,7 +24,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -45,6 +45,7 @@ public:
   using Vector = hn::Vec<F>;
   using Mask = hn::Mask<F>;
   using Pieces = MediumPieces<F>;
+  using Field = BrickSamples<F, IsStretched>;
   using NumberTag = hn::RebindToSigned<F>;
   using Numbers = hn::Vec<NumberTag>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(F()));
@@ -54,6 +55,7 @@ public:
     const TransferFunction& function, MediumLight& light)
     : Packet(packet)
     , Brick(brick)
+    , Samples(brick)
     , Light(light)
     , Ways(function, light)
     , Fine(brick.IsNearest ? 2.0f : 1.0f)
@@ -223,49 +225,14 @@ private:
         hn::IfThenElse(GetBitMask(tag, some), hn::LoadU(tag, this->Light.ToViewer[axis] + first),
           hn::Set(tag, this->Light.ToViewer[axis][other]));
       const Vector last = hn::Set(tag, this->Count[axis] - 1.0f);
-      rays.Cell[axis] = this->FindCells(axis, rays.Start[axis], zero, last, LargestSteps);
+      rays.Cell[axis] =
+        this->Samples.FindCells(axis, rays.Start[axis], zero, last, Field::LargestSteps);
     }
     rays.Length = DemoteLanes<F>([&](int part)
       { return hn::Mul(load(this->Light.Length, part), hn::Load(doubles, distance + part)); });
     rays.T = zero;
     rays.Ray = hn::Iota(NumberTag(), std::int32_t{ first });
   }
-
-  /// Where planes are, of the numbers that they have in the brick.
-  HWY_INLINE Vector GetPlanes(int axis, Vector number) const
-  {
-    if constexpr (IsStretched)
-    {
-      return hn::GatherIndex(F(), this->Brick.Planes[axis], hn::ConvertTo(NumberTag(), number));
-    }
-    else
-    {
-      return number;
-    }
-  }
-  /// The cells that points are in, out of those between two (of 2^steps).
-  HWY_INLINE Vector FindCells(int axis, Vector point, Vector first, Vector last, int steps) const
-  {
-    const F tag;
-    if constexpr (IsStretched)
-    {
-      Vector cell = first;
-      for (int step = steps; step-- > 0;)
-      {
-        const Vector next =
-          hn::Min(hn::Add(cell, hn::Set(tag, static_cast<float>(1 << step))), last);
-        cell = hn::IfThenElse(hn::Le(this->GetPlanes(axis, next), point), next, cell);
-      }
-      return cell;
-    }
-    else
-    {
-      return hn::Min(hn::Max(hn::Floor(point), first), last);
-    }
-  }
-  /// Steps of FindCells in a whole brick, and in a part.
-  static constexpr int LargestSteps = 9;
-  static constexpr int PartSteps = 5;
 
   /// The nodes of so many cells along an edge that rays are in.
   HWY_INLINE Nodes GetNodes(const Rays& rays, int cells) const
@@ -341,8 +308,8 @@ private:
     nodes.Exit = hn::Set(F(), 1.0f);
     for (int axis = 0; axis < 3; ++axis)
     {
-      const Vector plane =
-        this->GetPlanes(axis, this->Packet.Forward[axis] ? nodes.High[axis] : nodes.Low[axis]);
+      const Vector plane = this->Samples.GetPlanes(
+        axis, this->Packet.Forward[axis] ? nodes.High[axis] : nodes.Low[axis]);
       nodes.Leave[axis] = hn::Mul(hn::Sub(plane, rays.Start[axis]), rays.Inverse[axis]);
       nodes.Exit = hn::Min(nodes.Exit, nodes.Leave[axis]);
     }
@@ -412,124 +379,15 @@ private:
     }
   }
 
-  /// The cells of nodes where rays are at `t`, and where they are in these.
-  struct Places
+  /// Where rays are at `t`, in cells of nodes.
+  HWY_INLINE typename Field::Places FindPlaces(const Rays& rays, const Nodes& nodes, Vector t) const
   {
-    Vector Cell[3];
-    Vector Within[3];
-  };
-  HWY_INLINE Places FindPlaces(const Rays& rays, const Nodes& nodes, Vector t) const
-  {
-    const F tag;
-    const Vector zero = hn::Zero(tag);
-    const Vector one = hn::Set(tag, 1.0f);
-    Places places;
+    Vector points[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const Vector point = hn::Add(rays.Start[axis], hn::Mul(t, rays.Way[axis]));
-      const Vector last = hn::Sub(nodes.High[axis], one);
-      places.Cell[axis] = this->FindCells(axis, point, nodes.Low[axis], last, PartSteps);
-      Vector within = hn::Sub(point, this->GetPlanes(axis, places.Cell[axis]));
-      if constexpr (IsStretched)
-      {
-        within = hn::Mul(within,
-          hn::GatherIndex(
-            tag, this->Brick.Inverse[axis], hn::ConvertTo(NumberTag(), places.Cell[axis])));
-      }
-      places.Within[axis] = hn::Min(hn::Max(within, zero), one);
+      points[axis] = hn::Add(rays.Start[axis], hn::Mul(t, rays.Way[axis]));
     }
-    return places;
-  }
-
-  HWY_INLINE Vector Interpolate(const Vector corners[8], const Vector within[3]) const
-  {
-    const auto mix = [](Vector a, Vector b, Vector part)
-    { return hn::Add(a, hn::Mul(part, hn::Sub(b, a))); };
-    const Vector front = mix(
-      mix(corners[0], corners[1], within[0]), mix(corners[2], corners[3], within[0]), within[1]);
-    const Vector back = mix(
-      mix(corners[4], corners[5], within[0]), mix(corners[6], corners[7], within[0]), within[1]);
-    return this->ToPlaces(mix(front, back, within[2]));
-  }
-  /// Returns the places of values from which Subtracted is subtracted.
-  Vector ToPlaces(Vector values) const
-  {
-    const F tag;
-    return hn::Add(
-      hn::Mul(values, hn::Set(tag, this->Brick.Scale)), hn::Set(tag, this->Brick.Offset));
-  }
-
-  /// Loads samples less Subtracted: at the corners of cells, in as many pairs on x, or at places themselves (no pairs).
-  template <int Pairs>
-  HWY_INLINE void LoadSamples(const Vector place[3], Vector* samples) const
-  {
-    const F tag;
-    const Vector row = hn::Mul(place[1], hn::Set(tag, static_cast<float>(this->Brick.Row)));
-    const Vector slice = hn::Mul(place[2], hn::Set(tag, static_cast<float>(this->Brick.Slice)));
-    const Numbers offsets = hn::ConvertTo(NumberTag(), hn::Add(hn::Add(place[0], row), slice));
-    switch (this->Brick.Kind)
-    {
-      case MediumBrick::SampleKind::Float:
-        this->LoadPairs<float, Pairs>(offsets, samples);
-        break;
-      case MediumBrick::SampleKind::SignedByte:
-        this->LoadPairs<std::int8_t, Pairs>(offsets, samples);
-        break;
-      case MediumBrick::SampleKind::Byte:
-        this->LoadPairs<std::uint8_t, Pairs>(offsets, samples);
-        break;
-      case MediumBrick::SampleKind::SignedShort:
-        this->LoadPairs<std::int16_t, Pairs>(offsets, samples);
-        break;
-      default:
-        this->LoadPairs<std::uint16_t, Pairs>(offsets, samples);
-        break;
-    }
-  }
-  template <class T, int Pairs>
-  HWY_INLINE void LoadPairs(Numbers offsets, Vector* samples) const
-  {
-    const F tag;
-    const Vector subtracted = hn::Set(tag, this->Brick.Subtracted);
-    HWY_ALIGN std::int32_t stored[Width];
-    hn::Store(offsets, NumberTag(), stored);
-    for (int pair = 0; pair < (Pairs == 0 ? 1 : Pairs); ++pair)
-    {
-      const T* const first = static_cast<const T*>(this->Brick.Samples) +
-        (pair & 1) * this->Brick.Row + (pair >> 1) * this->Brick.Slice;
-      Vector own[2];
-      if constexpr (std::is_same_v<T, float> && Pairs != 0)
-      {
-        GatherPairs<F>(first, offsets, own[0], own[1]);
-      }
-      else
-      {
-        for (int side = 0; side < (Pairs == 0 ? 1 : 2); ++side)
-        {
-          if constexpr (std::is_same_v<T, float>)
-          {
-            own[side] = hn::GatherIndex(tag, first + side, offsets);
-          }
-          else
-          {
-            own[side] = hn::ConvertTo(tag,
-              SetLanes<std::int32_t, Width>(
-                [&](int lane) { return std::int32_t{ first[stored[lane] + side] }; }));
-          }
-        }
-      }
-      for (int side = 0; side < (Pairs == 0 ? 1 : 2); ++side)
-      {
-        samples[(Pairs == 0 ? 1 : 2) * pair + side] = hn::Sub(own[side], subtracted);
-      }
-    }
-  }
-
-  HWY_INLINE Vector FindValues(const Places& places) const
-  {
-    Vector corners[8];
-    this->LoadSamples<4>(places.Cell, corners);
-    return this->Interpolate(corners, places.Within);
+    return this->Samples.FindPlaces(points, nodes.Low, nodes.High);
   }
 
   /// Takes rays that see something through their nodes. `value`: where they are, of those that have one.
@@ -543,25 +401,27 @@ private:
     ways.End = nodes.Exit;
     ways.Length = hn::Mul(hn::Sub(nodes.Exit, rays.T), rays.Length);
     ways.Cubic = hn::Zero(tag);
-    const Places middle = this->FindPlaces(rays, nodes, hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
+    const typename Field::Places middle =
+      this->FindPlaces(rays, nodes, hn::Mul(half, hn::Add(rays.T, nodes.Exit)));
     // In a cell, samples are the same at all places.
     const bool areCells = hn::AllFalse(tag, hn::And(joined, visible));
     Vector corners[8];
     if (this->Brick.IsNearest)
     {
-      ways.Middle = this->FindNearest(middle.Cell);
+      ways.Middle = this->Samples.FindNearest(middle.Cell);
       ways.First = ways.Middle;
       ways.Last = ways.Middle;
     }
     else
     {
-      this->LoadSamples<4>(middle.Cell, corners);
-      ways.Middle = this->Interpolate(corners, middle.Within);
+      this->Samples.LoadCorners(middle.Cell, corners);
+      ways.Middle = this->Samples.Interpolate(corners, middle.Within);
       const Mask cells = hn::AndNot(joined, visible);
       const auto findValues = [&](Vector t)
       {
-        const Places places = this->FindPlaces(rays, nodes, t);
-        return areCells ? this->Interpolate(corners, places.Within) : this->FindValues(places);
+        const typename Field::Places places = this->FindPlaces(rays, nodes, t);
+        return areCells ? this->Samples.Interpolate(corners, places.Within)
+                        : this->Samples.FindValues(places);
       };
       ways.First = value;
       if (!hn::AllFalse(tag, hn::AndNot(hasValue, visible)))
@@ -578,7 +438,7 @@ private:
     Mask there = hn::And(visible, hn::Eq(hn::Sub(ways.Middle, ways.Middle), hn::Zero(tag)));
     if (this->Brick.Mask)
     {
-      there = hn::And(there, this->FindCovered(middle.Cell, there));
+      there = hn::And(there, this->Samples.FindCovered(middle.Cell, there));
     }
     for (Vector* const place : { &ways.First, &ways.Middle, &ways.Last, &ways.Cubic })
     {
@@ -605,7 +465,7 @@ private:
   }
 
   /// Shades what MediumPieces has kept apart, at places.
-  HWY_INLINE void Shade(const Rays& rays, const Places& places)
+  HWY_INLINE void Shade(const Rays& rays, const typename Field::Places& places)
   {
     using Shading = GradientShading<F>;
     Vector gradient[3];
@@ -645,7 +505,8 @@ private:
     const F tag;
     const Vector quarter = hn::Set(tag, 0.25f);
     const Vector t = hn::Add(rays.T, hn::Mul(quarter, hn::Sub(nodes.Exit, rays.T)));
-    const Vector value = this->Interpolate(corners, this->FindPlaces(rays, nodes, t).Within);
+    const Vector value =
+      this->Samples.Interpolate(corners, this->FindPlaces(rays, nodes, t).Within);
     const Vector twice = hn::Add(ways.Middle, ways.Middle);
     // The quadratic at 1 / 4.
     const Vector bend = hn::Sub(hn::Add(ways.First, ways.Last), twice);
@@ -654,40 +515,6 @@ private:
     const Vector cubic =
       hn::Mul(hn::Sub(value, quadratic), hn::Set(tag, static_cast<float>(64.0 / 3.0)));
     ways.Cubic = hn::IfThenElseZero(cells, cubic);
-  }
-
-  HWY_INLINE Vector FindNearest(const Vector cell[3]) const
-  {
-    const F tag;
-    Vector place[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      place[axis] = hn::Floor(hn::Mul(hn::Add(cell[axis], hn::Set(tag, 1.0f)), hn::Set(tag, 0.5f)));
-    }
-    Vector sample;
-    this->LoadSamples<0>(place, &sample);
-    return this->ToPlaces(sample);
-  }
-
-  /// Returns the subset of `rays` whose cells the mask lets hold data.
-  HWY_NOINLINE Mask FindCovered(const Vector cell[3], Mask rays) const
-  {
-    const F tag;
-    HWY_ALIGN float places[3][Width];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      hn::Store(cell[axis], tag, places[axis]);
-    }
-    std::uint32_t covered = 0;
-    for (std::uint32_t left = GetMaskBits(tag, rays); left != 0; left &= left - 1)
-    {
-      const int lane = __builtin_ctz(left);
-      const auto get = [&](int axis) { return static_cast<int>(places[axis][lane] / this->Fine); };
-      const int number = get(0) + this->Brick.Cells[0] * (get(1) + this->Brick.Cells[1] * get(2));
-      covered |= static_cast<std::uint32_t>(this->Brick.Mask[number >> 3] >> (number & 7) & 1)
-        << lane;
-    }
-    return GetBitMask(tag, covered);
   }
 
   /// Takes `some` rays to the nodes behind theirs. Returns those of them that are still in the brick.
@@ -701,8 +528,8 @@ private:
     for (int axis = 0; axis < 3; ++axis)
     {
       const Vector point = hn::Add(rays.Start[axis], hn::Mul(rays.T, rays.Way[axis]));
-      const Vector inside =
-        this->FindCells(axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), PartSteps);
+      const Vector inside = this->Samples.FindCells(
+        axis, point, nodes.Low[axis], hn::Sub(nodes.High[axis], one), Field::PartSteps);
       const Vector next =
         this->Packet.Forward[axis] ? nodes.High[axis] : hn::Sub(nodes.Low[axis], one);
       cells[axis] = hn::IfThenElse(hn::Le(nodes.Leave[axis], rays.T), next, inside);
@@ -721,6 +548,7 @@ private:
 
   const RayPacket& Packet;
   MediumBrick& Brick;
+  Field Samples;
   MediumLight& Light;
   Pieces Ways;
   float Fine; ///< coordinates in a cell
