@@ -230,6 +230,29 @@ void AddLit(Scenes& scenes)
   add("Scattering.Rough", rough, Everything, scattering, true, 2);
   add("Edges", waves, Everything, edges, false, 1);
   add("Edges.Rough", rough, Fog, mixed, true, 1);
+  // Shadows without occlusion are found while rays march.
+  rt::MediumLook both = shaded;
+  both.Scattering = 0.5;
+  both.Anisotropy = 0.4;
+  for (const bool isBehindSurface : { false, true })
+  {
+    scenes.push_back({ isBehindSurface ? "medium.Lit.Lamps.Behind" : "medium.Lit.Lamps",
+      [=](SceneStage& stage)
+      {
+        rt::LatticeMedium medium = stage.CreateMedium(waves, Fog);
+        medium.Look = isBehindSurface ? both : shaded;
+        stage.Add(std::move(medium));
+        if (isBehindSurface)
+        {
+          Recipe ball;
+          ball.Form = Recipe::Shape::Ball;
+          rt::LatticeIsosurface surface = stage.CreateIsosurface(ball);
+          surface.Look.Surface.Opacity = 0.5f;
+          stage.Add(std::move(surface));
+        }
+        stage.World.Transport.Shadows = true;
+      } });
+  }
   scenes.push_back({ "medium.Lit.Mixture",
     [=](SceneStage& stage)
     {

@@ -49,6 +49,10 @@ std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look)
   }
   MediumShading shading;
   const Material& surface = look.Surface;
+  const auto scattered = static_cast<float>(look.Scattering);
+  const float surfacePart = 1.0f - scattered;
+  shading.HasScattering = scattered > 0.0f;
+  shading.Anisotropy = static_cast<float>(look.Anisotropy);
   shading.SpecularPower = surface.SpecularPower;
   shading.HasHighlights = surface.Specular > 0.0f;
   shading.TwoSided = transport.TwoSided;
@@ -59,10 +63,10 @@ std::optional<MediumShading> MediumLighting::FindShading(const MediumLook& look)
     {
       return std::nullopt;
     }
-    shading.Lamps.push_back(
-      { glm::vec3(lamp.Direction), surface.Diffuse * lamp.Color, surface.Specular * lamp.Color });
+    shading.Lamps.push_back({ glm::vec3(lamp.Direction), surfacePart * surface.Diffuse * lamp.Color,
+      surfacePart * surface.Specular * lamp.Color, scattered * lamp.Color });
     (lamp.IsLoneHeadlight ? shading.Ambient : shading.AmbientOpacity) +=
-      surface.Ambient * (lamp.IsLoneHeadlight ? glm::vec3(1.0f) : lamp.AmbientColor);
+      surfacePart * surface.Ambient * (lamp.IsLoneHeadlight ? glm::vec3(1.0f) : lamp.AmbientColor);
   }
   return shading;
 }

@@ -147,7 +147,7 @@ public:
   const MediumLook* GetMarchedLook() const override
   {
     const MediumLook& look = this->Medium.Look;
-    const bool isPlain = look.Shade && look.Scattering == 0.0 && !look.Gradients && !look.Nearest;
+    const bool isPlain = look.Shade && !look.Gradients && !look.Nearest;
     return isPlain && !this->Medium.ColorValues && !this->Medium.Function2D &&
         this->Media.CanShade(this->Medium.Field)
       ? &look

@@ -250,8 +250,8 @@ private:
     this->SetExit(rays, nodes);
     return nodes;
   }
-  /// Replaces `macrocells` with the cells that rays are in, or with blocks of 2 x 2 x 2 cells that show nothing. Returns
-  /// those that may show anything. `number`: of the nodes.
+  /// Replaces `macrocells` with the cells that rays are in, or with blocks of 2 x 2 x 2 cells that show nothing.
+  /// Returns those of them that may show anything. `number`: of the nodes.
   HWY_INLINE Mask GoToCells(const Rays& rays, Mask macrocells, Numbers number, Nodes& nodes) const
   {
     const F tag;

@@ -154,6 +154,18 @@ public:
       Vector specular[3];
       set(lamp.Diffuse, diffuse);
       set(lamp.Specular, specular);
+      Vector direction[3];
+      set(lamp.Direction, direction);
+      Vector scattered[3] = { zero, zero, zero };
+      if (shading.HasScattering)
+      {
+        set(lamp.Scattered, scattered);
+        const Vector phase = GetPhase(shading.Anisotropy, dot(direction, toViewer));
+        for (Vector& channel : scattered)
+        {
+          channel = hn::Mul(channel, phase);
+        }
+      }
       if (shading.HasShadows)
       {
         for (int channel = 0; channel < 3; ++channel)
@@ -161,15 +173,18 @@ public:
           const Vector arriving = arrives(number, channel);
           diffuse[channel] = hn::Mul(diffuse[channel], arriving);
           specular[channel] = hn::Mul(specular[channel], arriving);
+          scattered[channel] = hn::Mul(scattered[channel], arriving);
         }
       }
-      Vector direction[3];
-      set(lamp.Direction, direction);
       const Vector along = hn::Neg(dot(normal, direction));
       const Vector cosine = hn::Max(shading.TwoSided ? hn::Abs(along) : along, zero);
       for (int channel = 0; channel < 3; ++channel)
       {
         ofEmission[channel] = hn::Add(ofEmission[channel], hn::Mul(cosine, diffuse[channel]));
+        if (shading.HasScattering)
+        {
+          ofEmission[channel] = hn::Add(ofEmission[channel], scattered[channel]);
+        }
       }
       if (shading.HasHighlights)
       {
@@ -183,6 +198,17 @@ public:
         }
       }
     }
+  }
+
+private:
+  /// MediumLighting's, of Henyey and Greenstein.
+  static HWY_INLINE Vector GetPhase(float anisotropy, Vector cosine)
+  {
+    const F tag;
+    const float square = anisotropy * anisotropy;
+    const Vector base =
+      hn::Sub(hn::Set(tag, 1.0f + square), hn::Mul(hn::Set(tag, 2.0f * anisotropy), cosine));
+    return hn::Div(hn::Set(tag, 1.0f - square), hn::Mul(base, hn::Sqrt(base)));
   }
 };
 
