@@ -478,24 +478,25 @@ private:
     this->Ways.EndShaded(ofEmission, ofOpacity);
   }
 
-  /// The part of a lamp's light that arrives at what is shaded: between two places of MediumLight::Place.
+  /// The part of a lamp's light that arrives at what is shaded: on the line through two places of MediumLight::Place.
   HWY_INLINE Vector FindArriving(const Rays& rays, std::size_t lamp, int channel) const
   {
     const F tag;
     const NumberTag numbers;
     constexpr auto places = static_cast<float>(MediumLight::Places);
-    const Vector place = hn::Min(
-      hn::Max(hn::Sub(hn::Mul(this->Ways.GetOpacity(), hn::Set(tag, places)), hn::Set(tag, 0.5f)),
-        hn::Zero(tag)),
-      hn::Set(tag, places - 1.0f));
-    const Vector first = hn::Min(hn::Floor(place), hn::Set(tag, places - 2.0f));
+    const Vector zero = hn::Zero(tag);
+    const Vector place =
+      hn::Sub(hn::Mul(this->Ways.GetOpacity(), hn::Set(tag, places)), hn::Set(tag, 0.5f));
+    const Vector first = hn::Min(hn::Max(hn::Floor(place), zero), hn::Set(tag, places - 2.0f));
     const float* const all =
       this->Light.Arriving.data() + MediumLight::GetArriving(lamp, channel, 0, 0);
     const Numbers at = hn::Add(
       hn::Mul(hn::ConvertTo(numbers, first), hn::Set(numbers, std::int32_t{ MaxRays })), rays.Ray);
     const Vector before = hn::GatherIndex(tag, all, at);
     const Vector behind = hn::GatherIndex(tag, all + MaxRays, at);
-    return hn::Add(before, hn::Mul(hn::Sub(place, first), hn::Sub(behind, before)));
+    const Vector arriving =
+      hn::Add(before, hn::Mul(hn::Sub(place, first), hn::Sub(behind, before)));
+    return hn::Min(hn::Max(arriving, zero), hn::Set(tag, 1.0f));
   }
 
   /// Along a ray in a cell, values are a cubic.

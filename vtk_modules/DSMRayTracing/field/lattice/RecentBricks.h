@@ -27,7 +27,7 @@ public:
     }
   }
 
-  /// Returns the content of a brick. Calls `fill(content)` first if it is that of another brick, or if the last `fill`
+  /// Returns the content of a brick. Calls `fill(content)` first if the slot holds another brick, or if the last `fill`
   /// of it threw.
   template <class Fill>
   Content& Get(dsm::BlockId id, const Fill& fill)

@@ -285,7 +285,7 @@ private:
       first[axis] = MacrocellCells * macrocell[static_cast<std::size_t>(axis)];
       counts[axis] = std::min(MacrocellCells, this->Cells[axis] - first[axis]);
     }
-    // Of edges along x, then of faces.
+    // The bins of edges along x.
     std::int16_t least[points][points][MacrocellCells];
     std::int16_t most[points][points][MacrocellCells];
     for (int z = 0; z <= counts[2]; ++z)
