@@ -154,7 +154,7 @@ void MediaMarcher::LocatePlaces(
   light.KeepsPieces = false;
   light.Shading = nullptr;
   light.LocatesPlaces = true;
-  light.ErrorFactor = 1.0 / MediumTolerance::Shadow;
+  light.ErrorFactor = 1.0 / (MediumTolerance::Shadow * this->Errors);
   ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam].get() : nullptr;
   March(*this->Media.front(), false, rays, wanted, own, light);
   light.ErrorFactor = 1.0;
