@@ -18,6 +18,8 @@ constexpr double MovingSeconds = 0.07;
 /// A picture that takes longer has a draft before it.
 constexpr double SoonSeconds = 0.2;
 constexpr double DraftSeconds = 0.1;
+/// A picture is abandoned when it takes so many times as long as the last one.
+constexpr double Doubt = 1.25;
 /// Between a draft and a picture that takes longer, there are further drafts.
 constexpr double LongSeconds = 2.0;
 
@@ -68,7 +70,8 @@ std::vector<Resolution::Try> Resolution::GetTries(
   std::vector<Try> tries;
   if (edge < CoarsestEdge)
   {
-    tries.push_back({ edge, SoonSeconds }); // what is new may take longer than what was shown
+    // What is new may take longer than what was shown.
+    tries.push_back({ edge, std::max(DraftSeconds, Doubt * seconds / (edge * edge)) });
   }
   tries.push_back({ CoarsestEdge, Unlimited });
   return tries;
