@@ -174,7 +174,7 @@ TEST_F(VolumeMapperOfMasks, MakeNewBricksOnlyWhenTheyChange)
   EXPECT_TRUE(isBuilt());
   EXPECT_FALSE(isBuilt());
   this->Mapper->SetMaskRange(1.0, 2.0);
-  EXPECT_FALSE(isBuilt()) << "there is no mask";
+  EXPECT_FALSE(isBuilt()) << "nothing is masked";
   this->Mapper->SetMaskArray("labels");
   EXPECT_TRUE(isBuilt());
   this->Mapper->RemoveAllMaskValues();

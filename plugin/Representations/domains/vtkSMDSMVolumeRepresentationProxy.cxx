@@ -60,8 +60,7 @@ vtkSmartPointer<vtkPVXMLElement> MakeEither(const std::vector<std::string>& hint
 constexpr const char* SliceIndices[] = { "DSMSliceXIndex", "DSMSliceYIndex", "DSMSliceZIndex" };
 constexpr const char* MoreSlices[] = { "DSMSliceXIndices", "DSMSliceYIndices", "DSMSliceZIndices" };
 
-/// ParaView's definition lets the panel show the property for Volume alone, by a hint that is the same for all
-/// datasets.
+/// By ParaView's definition the panel shows the property for Volume alone. The hint is the same for all datasets.
 void ShowForVolumes(vtkSMProperty* property)
 {
   vtkPVXMLElement* const hints = property ? property->GetHints() : nullptr;
@@ -94,8 +93,8 @@ void OfferBlendModes(vtkSMProperty* property, vtkSMProperty* own)
 
 } // namespace
 
-/// Volume's definition lets the panel show these to advanced users only, or to nobody, or Shade for Volume, too, and a
-/// property can name only one representation. Shade is in a group that is hidden for all others.
+/// By Volume's definition the panel shows these properties to advanced users only or to nobody, and Shade for Volume.
+/// A property can name only one representation. Shade is in a group that is hidden for all others.
 void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
 {
   this->Superclass::CreateVTKObjects();
