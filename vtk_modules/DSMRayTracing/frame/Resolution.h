@@ -19,7 +19,7 @@ struct Resolution
   static constexpr int CoarsestEdge = 8;
   static constexpr double MediumErrors = 16.0; ///< LightTransport, of all such pictures
 
-  /// What a view has shown last. Plain, for messages.
+  /// The picture that a view has shown last. Plain, for messages.
   struct Shown
   {
     std::uint64_t Content = 0; ///< GetContent; 0: nothing
