@@ -93,6 +93,8 @@ def picture_missing(source, array, kind, name=None, **properties):
 for kind in (REPRESENTATION, "DSM Volume", "DSM Slices"):
     # Slices show NaN in the color map's color for it; what is ignored is not there.
     is_sliced = kind == "DSM Slices"
+    # Ranges of macrocells differ a little beside what is missing, and so does where a volume is integrated finely.
+    tolerance = 2 if kind == "DSM Volume" else 1
     reference = ("giant", IGNORED) if is_sliced else ("nan", {})
     expected, suggested = picture_missing(missing, ("POINTS", reference[0]), kind, f"Missing {kind}", **reference[1])
     check(0.03 < get_covered(expected).mean() < 0.3, f"{kind}: a part is shown")
@@ -100,7 +102,7 @@ for kind in (REPRESENTATION, "DSM Volume", "DSM Slices"):
         shell, _ = picture_missing(missing, ("POINTS", array), kind)
         check((shell != expected).any(), f"{kind}, {array}: values that are not ignored are there")
         traced, found = picture_missing(missing, ("POINTS", array), kind, **IGNORED)
-        check_equal(traced, expected, f"{kind}, {array}: as NaN")
+        check_equal(traced, expected, f"{kind}, {array}: as NaN", tolerance)
         check(found == suggested, f"{kind}, {array}: the isovalue that NaN suggest: {found}, {suggested}")
     for array in ("cells", "short cells"):
         expected_of_cells, _ = picture_missing(hidden, ("CELLS", array), kind)
