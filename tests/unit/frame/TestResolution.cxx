@@ -24,7 +24,7 @@ struct Costs
   }
   rt::Resolution::Shown Show(std::uint64_t content, int edge) const
   {
-    return { content, edge, 1e-6 * this->Seconds };
+    return { content, edge, 1e-6 * this->Seconds, true };
   }
   std::vector<int> TryAfter(const rt::Resolution::Shown& shown, std::uint64_t content) const
   {
@@ -46,6 +46,9 @@ TEST(Resolution, DrawsDraftsOfWhatIsNewAndSlow)
   EXPECT_EQ(Costs(0.35).TryAfter(Costs(0.35).Show(1, 1), 2), Edges({ 2, 8 }));
   EXPECT_EQ(Costs(1.5).TryAfter(Costs(1.5).Show(1, 1), 2), Edges({ 4, 8 }));
   EXPECT_EQ(Costs(20.0).TryAfter(Costs(20.0).Show(1, 1), 2), Edges({ 8 }));
+  rt::Resolution::Shown step = Costs(20.0).Show(1, 1);
+  step.MayDraft = false;
+  EXPECT_EQ(Costs(20.0).TryAfter(step, 2), Edges({ 1 })) << "of an animation";
   const Costs quick(0.15);
   const auto tries = rt::Resolution::GetTries(quick.Show(1, 1), 2, quick.Request);
   EXPECT_LT(tries.front().Seconds, 0.5) << "what is new may be slower than what was shown";

@@ -58,6 +58,10 @@ std::vector<Resolution::Try> Resolution::GetTries(
     const bool isNext = shown.Edge <= 2 || seconds <= LongSeconds;
     return { { isNext ? 1 : static_cast<int>(shown.Edge) / 2, Unlimited } };
   }
+  if (!shown.MayDraft)
+  {
+    return { { 1, Unlimited } };
+  }
   int edge = CoarsestEdge;
   if (seconds > 0.0)
   {

@@ -19,12 +19,13 @@ struct Resolution
   static constexpr int CoarsestEdge = 8;
   static constexpr double MediumErrors = 16.0; ///< LightTransport, of all such pictures
 
-  /// The picture that a view has shown last. Plain, for messages.
+  /// The picture that a view has shown last, and what it shows next. Plain, for messages.
   struct Shown
   {
     std::uint64_t Content = 0; ///< GetContent; 0: nothing
     std::int64_t Edge = 1;
     double SecondsPerPixel = 0.0; ///< for each pixel that was traced; 0: unknown
+    bool MayDraft = true; ///< false: the next picture is a step of an animation, which has no draft
   };
 
   struct Try

@@ -189,9 +189,10 @@ public:
 
   ///@{
   /**
-   * If a still picture of something new would take longer than about 0.2 s, a draft with up to 8 x 8 pixels in one
-   * is shown first, and further renders replace it, as long as IsRefined() is false. Has no effect unless
-   * SamplesPerFrame is positive. Off by default. Same value on every rank.
+   * If a still picture of a new look or camera would take longer than about 0.2 s, a draft is shown first, with up to
+   * 8 x 8 pixels in one. Further renders replace it, as long as IsRefined() is false. Data that take the place of
+   * others, such as time steps, have no draft. Has no effect unless SamplesPerFrame is positive. Off by default. Same
+   * value on every rank.
    */
   void SetShowsDrafts(bool drafts);
   bool GetShowsDrafts() const;

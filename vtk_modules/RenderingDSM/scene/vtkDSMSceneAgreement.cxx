@@ -145,12 +145,14 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeHoldings(bool& needsUpdate)
   needsUpdate = this->SettledVersion != this->Group->GetSettingsVersion();
   const auto& members = this->Members.GetShown();
   std::vector<std::byte> bytes(sizeof(Holdings) + members.size());
+  this->HasNextStep = false;
   for (std::size_t index = 0; index < members.size(); ++index)
   {
     vtkDSMSceneMember& member = *members[index].State;
     dsm::Messenger& messenger = this->Group->GetMessenger();
     member.UpdatePiece(messenger.GetRank(), messenger.GetSize());
     const bool hasNewData = member.HasNewData();
+    this->HasNextStep = this->HasNextStep || (hasNewData && member.HasBlocks());
     bytes[sizeof(Holdings) + index] = std::byte(hasNewData ? 1 : 0);
     needsUpdate = needsUpdate || hasNewData || member.NeedsRanks(*this->Group, wantsCoarser);
   }
@@ -272,6 +274,7 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   view.Offer = this->Accumulation.CreateOffer(this->Group->GetStore(), scene,
     rt::Resolution::Reduce(request, edge), this->Light->GetSamplesPerPixel(), this->GetPace());
   view.Shown = this->Shown;
+  view.Shown.MayDraft = !this->HasNextStep;
   view.Background = this->Background;
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
   view.IsApart = canBeApart && !this->Image && !scene.IsOpaque() &&

@@ -284,7 +284,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
     if (result != Result::Aborted)
     {
       this->Shown = { content, edge,
-        this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()) };
+        this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()), true };
     }
     if (isDraft)
     {

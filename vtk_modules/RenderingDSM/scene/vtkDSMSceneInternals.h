@@ -99,6 +99,7 @@ public:
   rt::FrameAccumulation::Pace Pace; ///< pace of still images
   int InteractiveReduction = 0;
   bool ShowsDrafts = false;
+  bool HasNextStep = false;    ///< new data in place of others that were shown
   rt::Resolution::Shown Shown; ///< on every rank the same, but after a failure
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
