@@ -172,7 +172,7 @@ class Watch:
             return
 
         def time_render():
-            """Of a whole picture: what is rendered first may be a draft."""
+            """Times a whole picture. The first one that a render shows may be a draft."""
             self.display.DSMIsoValues = [self.display.DSMIsoValues[0] + 0.01]
             start = time.monotonic()
             simple.SaveScreenshot(PICTURE + ".whole.png", self.view)

@@ -302,15 +302,6 @@ protected:
     this->Colors->SetIndexedColorRGBA(index, color.data());
   }
 
-  vtkSmartPointer<vtkUnsignedCharArray> DrawLabels(vtkVolumeMapper* mapper)
-  {
-    mapper->SetInputDataObject(this->Image);
-    this->Volume->SetMapper(mapper);
-    this->Window->Render();
-    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
-    return pixels;
-  }
   /// The largest of a channel.
   static double FindMost(vtkUnsignedCharArray* pixels, int channel)
   {
@@ -328,17 +319,17 @@ TEST_F(VolumeMapperOfLabels, AreThoseOfTheRayCastMapper)
   vtkNew<vtkGPUVolumeRayCastMapper> theirs;
   theirs->SetAutoAdjustSampleDistances(0);
   theirs->SetSampleDistance(0.03f);
-  const auto expected = this->DrawLabels(theirs);
+  const auto expected = this->Draw(theirs, this->Image);
   EXPECT_GT(FindMost(expected, 0), 100.0);
   EXPECT_GT(FindMost(expected, 2), 50.0);
-  const auto nearest = this->DrawLabels(this->Mapper);
+  const auto nearest = this->Draw(this->Mapper, this->Image);
   EXPECT_LT(GetDifference(nearest, expected), 0.5);
   EXPECT_EQ(FindMost(nearest, 1), 0.0) << "no sample has the green label";
   this->Property->SetInterpolationTypeToLinear();
-  EXPECT_GT(FindMost(this->DrawLabels(this->Mapper), 1), 5.0);
+  EXPECT_GT(FindMost(this->Draw(this->Mapper, this->Image), 1), 5.0);
   // Categories are never interpolated.
   this->Colors->IndexedLookupOn();
-  const auto categories = this->DrawLabels(this->Mapper);
+  const auto categories = this->Draw(this->Mapper, this->Image);
   EXPECT_LT(GetDifference(categories, nearest), 0.01);
   EXPECT_EQ(FindMost(categories, 1), 0.0);
 }
@@ -347,13 +338,13 @@ TEST_F(VolumeMapperOfLabels, EachHasAColorAndAnOpacity)
 {
   this->Colors->IndexedLookupOn();
   this->SetColor(1, 1.0, { 1.0, 0.0, 0.0, 0.0 });
-  const auto without = this->DrawLabels(this->Mapper);
+  const auto without = this->Draw(this->Mapper, this->Image);
   EXPECT_EQ(FindMost(without, 0), 0.0) << "the red label is hidden";
   EXPECT_GT(FindMost(without, 2), 100.0);
   // The same by the opacity function.
   this->SetColor(1, 1.0, { 1.0, 0.0, 0.0, 1.0 });
   this->Opacity->AddPoint(1.0, 0.0);
-  EXPECT_LT(GetDifference(this->DrawLabels(this->Mapper), without), 0.01);
+  EXPECT_LT(GetDifference(this->Draw(this->Mapper, this->Image), without), 0.01);
   // A label without an annotation has the look of NaN.
   this->Colors->SetAnnotations(nullptr, nullptr);
   for (const double label : { 0.0, 1.0, 5.0 })
@@ -361,10 +352,10 @@ TEST_F(VolumeMapperOfLabels, EachHasAColorAndAnOpacity)
     this->Colors->SetAnnotation(label, "known");
   }
   this->Colors->SetNanColor(0.0, 1.0, 0.0);
-  EXPECT_LT(FindMost(this->DrawLabels(this->Mapper), 2), 1.0);
-  EXPECT_NEAR(FindMost(this->DrawLabels(this->Mapper), 1), FindMost(without, 2), 1.0);
+  EXPECT_LT(FindMost(this->Draw(this->Mapper, this->Image), 2), 1.0);
+  EXPECT_NEAR(FindMost(this->Draw(this->Mapper, this->Image), 1), FindMost(without, 2), 1.0);
   this->Colors->SetNanOpacity(0.0);
-  EXPECT_EQ(FindMost(this->DrawLabels(this->Mapper), 1), 0.0);
+  EXPECT_EQ(FindMost(this->Draw(this->Mapper, this->Image), 1), 0.0);
 }
 
 TEST_F(VolumeMapperOfLabels, FacesOfCutsShowThem)
@@ -375,7 +366,7 @@ TEST_F(VolumeMapperOfLabels, FacesOfCutsShowThem)
   this->Mapper->AddClippingPlane(plane);
   this->Mapper->CappingOn();
   this->Mapper->CapOpacityOff();
-  const auto pixels = this->DrawLabels(this->Mapper);
+  const auto pixels = this->Draw(this->Mapper, this->Image);
   for (vtkIdType pixel = 0; pixel < pixels->GetNumberOfTuples(); ++pixel)
   {
     ASSERT_EQ(pixels->GetTypedComponent(pixel, 1), 0) << pixel;
@@ -445,27 +436,18 @@ protected:
     this->Function->Modified();
   }
 
-  vtkSmartPointer<vtkUnsignedCharArray> DrawIt(vtkVolumeMapper* mapper)
-  {
-    mapper->SetInputDataObject(this->Image);
-    this->Volume->SetMapper(mapper);
-    this->Window->Render();
-    auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, pixels);
-    return pixels;
-  }
   vtkSmartPointer<vtkUnsignedCharArray> DrawTheirs(const char* second)
   {
     vtkNew<vtkGPUVolumeRayCastMapper> theirs;
     theirs->SetAutoAdjustSampleDistances(0);
     theirs->SetSampleDistance(Step);
     theirs->SetTransfer2DYAxisArray(second);
-    return this->DrawIt(theirs);
+    return this->Draw(theirs, this->Image);
   }
   vtkSmartPointer<vtkUnsignedCharArray> DrawOurs(const char* second)
   {
     this->Mapper->SetTransfer2DYAxisArray(second);
-    return this->DrawIt(this->Mapper);
+    return this->Draw(this->Mapper, this->Image);
   }
 
   vtkSmartPointer<vtkImageData> Image = MakeBall();

@@ -168,7 +168,7 @@ TEST_F(VolumeMapper, ShowsADraftOfWhatIsNew)
   this->Scene->SetSamplesPerFrame(1);
   this->Scene->SetShowsDrafts(true);
   const int draft = CountCovered(this->RenderDistances());
-  EXPECT_EQ(CountTiles(this->Scene), 2 * 2) << "nobody knows how long it takes";
+  EXPECT_EQ(CountTiles(this->Scene), 2 * 2) << "its time is unknown";
   EXPECT_EQ(this->Scene->GetNumberOfSamples(), 0);
   EXPECT_FALSE(this->Scene->IsRefined());
   const std::vector<double> whole = this->RenderDistances();

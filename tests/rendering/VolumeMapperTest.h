@@ -92,7 +92,11 @@ protected:
   /// Draws the ball with another mapper of the volume; returns the colors of the window's pixels.
   vtkSmartPointer<vtkUnsignedCharArray> Draw(vtkVolumeMapper* mapper)
   {
-    mapper->SetInputDataObject(MakeBall());
+    return this->Draw(mapper, MakeBall());
+  }
+  vtkSmartPointer<vtkUnsignedCharArray> Draw(vtkVolumeMapper* mapper, vtkDataObject* data)
+  {
+    mapper->SetInputDataObject(data);
     this->Volume->SetMapper(mapper);
     this->Window->Render();
     auto pixels = vtkSmartPointer<vtkUnsignedCharArray>::New();

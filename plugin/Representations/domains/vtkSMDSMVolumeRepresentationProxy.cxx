@@ -93,8 +93,8 @@ void OfferBlendModes(vtkSMProperty* property, vtkSMProperty* own)
 
 } // namespace
 
-/// By Volume's definition the panel shows these properties to advanced users only or to nobody, and Shade for Volume.
-/// A property can name only one representation. Shade is in a group that is hidden for all others.
+/// Volume's definition hides these properties, or lets only advanced users see them, and it shows Shade for Volume
+/// alone. A property can name only one representation. Shade is in a group that is hidden for all others.
 void vtkSMDSMVolumeRepresentationProxy::CreateVTKObjects()
 {
   this->Superclass::CreateVTKObjects();

@@ -78,7 +78,7 @@ protected:
     return own;
   }
 
-  /// Of a mean, values above 0 count.
+  /// Adds a medium. A mean takes values above 0 only.
   void Add(const Values& values, const Nodes& nodes, Blending blending = Blending::Composite,
     const rt::MediumLook& ownLook = {})
   {

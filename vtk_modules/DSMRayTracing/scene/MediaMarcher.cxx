@@ -157,7 +157,6 @@ void MediaMarcher::LocatePlaces(
   light.ErrorFactor = 1.0 / (MediumTolerance::Shadow * this->Errors);
   ObjectBeam* const own = beam ? beam->Objects[this->FirstBeam].get() : nullptr;
   March(*this->Media.front(), false, rays, wanted, own, light);
-  light.ErrorFactor = 1.0;
 }
 
 void MediaMarcher::Gather(

@@ -216,6 +216,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
   rt::FrameRequest whole;
   std::uint64_t content = 0;
   std::vector<Try> tries;
+  const bool drawsDrafts = this->DrawsDrafts();
   messenger.Insist(
     [&]
     {
@@ -226,7 +227,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
   for (auto next = tries.begin(); next != tries.end() && result == Result::Aborted; ++next)
   {
     const int edge = next->Picture.Edge;
-    const bool isDraft = this->DrawsDrafts() && edge > 1;
+    const bool isDraft = drawsDrafts && edge > 1;
     if (next == tries.begin() || edge != (next - 1)->Picture.Edge)
     {
       messenger.Insist([&] { request = rt::Resolution::Reduce(whole, edge); });
@@ -241,17 +242,19 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
           {
             this->Members.AddTo(scene, next->Coarser);
           }
-          request.IsPreview = request.IsPreview || isDraft;
-          scene.Transport.MediumErrors =
-            isDraft ? rt::Resolution::MediumErrors : scene.Transport.MediumErrors;
+          if (isDraft)
+          {
+            request.IsPreview = true;
+            scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
+          }
           return this->Accumulation.CreateOffer(store, scene, request, wanted, pace);
         });
     }
-    const bool isLast = next + 1 == tries.end();
     this->Detail.Begin();
     const auto start = Clock::now();
-    const auto watch = [this, window, isLast, &told, start, seconds = next->Picture.Seconds](
-                         double part)
+    const bool mayWaitTooLong = next + 1 != tries.end() && !drawsDrafts;
+    const auto watch =
+      [this, window, mayWaitTooLong, &told, start, seconds = next->Picture.Seconds](double part)
     {
       const auto now = Clock::now();
       if (now > told)
@@ -261,7 +264,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
       }
       return (window && window->CheckAbortStatus() != 0) ||
         std::chrono::duration<double>(now - start).count() > seconds ||
-        (!isLast && !this->DrawsDrafts() && this->Detail.IsTooLong(this->Group->GetStore()));
+        (mayWaitTooLong && this->Detail.IsTooLong(this->Group->GetStore()));
     };
     messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
     result = this->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store }, offers,
@@ -275,7 +278,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scen
             isDraft ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
             next->Coarser);
         });
-      if (!this->DrawsDrafts() && tries.size() > 1)
+      if (!drawsDrafts && tries.size() > 1)
       {
         this->Detail.Note(next->Coarser, this->Statistics->GetNumberOfMisses(),
           this->Statistics->GetFrameSeconds());
@@ -430,7 +433,7 @@ bool vtkDSMScene::Internals::IsReduced() const
   return this->InteractiveReduction > 0 && this->IsInteractive();
 }
 
-/// Returns the edge of a picture that is no draft. `request`: of edge 1.
+/// Returns the edge of a picture that is not a draft. `request`: of edge 1.
 int vtkDSMScene::Internals::GetMovingEdge(const rt::FrameRequest& request) const
 {
   return this->IsReduced() ? rt::Resolution::GetMovingEdge(
