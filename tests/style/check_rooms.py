@@ -28,7 +28,7 @@ FORBIDDEN = {
 # Folder of a module -> its rooms, lowest first: a room uses itself and those before it.
 ROOMS = {
     "vtk_modules/DSMCore": ["base", "transport", "memory", "publish", "fetch", "table", "paged", "store"],
-    "vtk_modules/DSMBricks": ["base", "accel", "layout", "sorted", "build", "levels", "sample"],
+    "vtk_modules/DSMBricks": ["base", "accel", "layout", "sorted", "build", "cells", "levels", "sample"],
     "vtk_modules/DSMRayTracing": [
         "base", "ray", "look", "object", "field", "surface", "slice", "medium", "mesh", "light", "scene", "schedule",
         "frame",
@@ -43,7 +43,7 @@ ROOMS = {
     ],
 }
 # Folder of a room -> its folders, lowest first, likewise; files beside them may use all.
-FOLDERS = {"vtk_modules/DSMRayTracing/field": ["cells", "grid", "walk", "lattice", "levels"]}
+FOLDERS = {"vtk_modules/DSMRayTracing/field": ["cells", "grid", "walk", "lattice", "levels", "tetrahedra"]}
 MPI_FILE = "vtk_modules/DSMCore/transport/MpiTransport.cxx"
 
 
