@@ -2,10 +2,12 @@
 #ifndef FieldKinds_h
 #define FieldKinds_h
 
+#include "tests/support/CellModel.h"
 #include "tests/support/FunctionVolume.h"
 #include "tests/support/LevelModel.h"
 #include "tests/support/QuadraticField.h"
 
+#include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/levels/PublishLevels.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
@@ -14,9 +16,12 @@
 #include "DSMRayTracing/slice/SliceTracer.h"
 #include "DSMRayTracing/surface/IsosurfaceTracer.h"
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace FieldKinds
 {
@@ -99,6 +104,63 @@ struct Levels
 
 private:
   static constexpr std::int64_t Roots = 8;
+};
+
+/// Cells of all kinds, or one curvilinear grid; the ranks have cells in turn.
+template <bool IsGrid>
+struct Cells
+{
+  using FieldType = rt::CellField;
+  static constexpr bool IsExact = false;
+
+  static std::shared_ptr<const bricks::CellValues> Publish(
+    const Quadratic& function, dsm::Messenger& messenger, dsm::BlockStore& store)
+  {
+    using bricks::Index3;
+    CellModel::Settings settings;
+    settings.Boxes = Index3(Edge);
+    settings.IsGrid = IsGrid;
+    settings.Move = [](const glm::dvec3& place) { return Move(place); };
+    settings.KindOf = [](const Index3& box)
+    { return static_cast<CellModel::Kind>((box.x / 3 + box.y / 5 + box.z / 4) % 4); };
+    settings.IsOwn = [&](const Index3& box)
+    { return (box.x + box.z) / 3 % messenger.GetSize() == messenger.GetRank(); };
+    const CellModel model(std::move(settings));
+    bricks::CornerRoutes routes;
+    bricks::SortedBrickSettings sorting;
+    sorting.BrickBytes = 8192;
+    constexpr auto place = dsm::BlockStore::Place::Memory;
+    const auto cells =
+      bricks::PublishCells("cells", model, sorting, store, messenger, place, routes);
+    const auto getValue = [&](std::uint64_t point)
+    { return function.Evaluate(model.GetPlaces()[point]); };
+    std::vector<bricks::PackedGradient> gradients;
+    for (const glm::dvec3& at : model.GetPlaces())
+    {
+      const glm::dvec3 gradient = function.GetGradient(at);
+      gradients.emplace_back(&gradient.x);
+    }
+    return bricks::PublishCellValues(
+      "values", cells, routes, getValue, gradients, 2, store, messenger, place);
+  }
+  static FieldType Create(const std::shared_ptr<const bricks::CellValues>& values)
+  {
+    FieldType field;
+    field.Voxels = values;
+    return field;
+  }
+
+private:
+  static constexpr std::int64_t Edge = 28;
+
+  /// From [0, 1]^3 to [-1, 1]^3, bent inside.
+  static glm::dvec3 Move(const glm::dvec3& place)
+  {
+    const glm::dvec3 inside = place * (1.0 - place);
+    const double bend = inside.x * inside.y * inside.z;
+    return 2.0 * place - 1.0 +
+      bend * glm::dvec3(2.0 * std::sin(7.0 * place.y), 1.5, std::cos(5.0 * place.x));
+  }
 };
 
 /// An object or a medium of a scene, whether its kind is in the list or not.

@@ -225,7 +225,8 @@ private:
   }
 };
 
-using Kinds = testing::Types<FieldKinds::Functions, FieldKinds::Lattices, FieldKinds::Levels>;
+using Kinds = testing::Types<FieldKinds::Functions, FieldKinds::Lattices, FieldKinds::Levels,
+  FieldKinds::Cells<false>, FieldKinds::Cells<true>>;
 TYPED_TEST_SUITE(FieldTest, Kinds);
 
 /// Returns whether the ball is between a place of the floor and the light.

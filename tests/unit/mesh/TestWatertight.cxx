@@ -171,7 +171,7 @@ TEST(TriangleIntersector, WeightsAndSides)
   const float c[3] = { 0.0f, 1.0f, 0.0f };
   const double lower[3] = { 0.0, 0.0, 0.0 };
   const double upper[3] = { 1.0, 1.0, 0.0 };
-  rt::MeshRay ray;
+  rt::ShearedRay ray;
   for (const double side : { 1.0, -1.0 })
   {
     const double origin[3] = { 0.25, 0.5, 3.0 * side };

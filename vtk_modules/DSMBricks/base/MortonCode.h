@@ -24,20 +24,28 @@ public:
     std::copy_n(lower, 3, this->Lower);
   }
 
-  /// Returns the code of the centroid of a triangle with nine coordinates. Centroids outside of the
-  /// cube are clamped to its border.
-  std::uint64_t GetOfTriangle(const float corners[9]) const
+  /// Returns the code of a place. Places outside of the cube are moved to its border.
+  std::uint64_t Get(const double place[3]) const
   {
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double center =
-        (static_cast<double>(corners[axis]) + corners[3 + axis] + corners[6 + axis]) * (1.0 / 3.0);
-      const double place = std::clamp(
-        (center - this->Lower[axis]) * this->Scale, 0.0, (std::uint32_t(1) << BitsPerAxis) - 1.0);
-      code |= Spread(static_cast<std::uint64_t>(place)) << axis;
+      const double number = std::clamp((place[axis] - this->Lower[axis]) * this->Scale, 0.0,
+        (std::uint32_t(1) << BitsPerAxis) - 1.0);
+      code |= Spread(static_cast<std::uint64_t>(number)) << axis;
     }
     return code;
+  }
+  /// Returns the code of the centroid of a triangle with nine coordinates.
+  std::uint64_t GetOfTriangle(const float corners[9]) const
+  {
+    double center[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      center[axis] =
+        (static_cast<double>(corners[axis]) + corners[3 + axis] + corners[6 + axis]) * (1.0 / 3.0);
+    }
+    return this->Get(center);
   }
 
 private:

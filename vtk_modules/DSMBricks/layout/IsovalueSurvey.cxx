@@ -222,31 +222,35 @@ void IsovalueSurvey::CountBrick(
         return;
       }
       this->Reach(least, greatest);
-      const double perWidth = std::ldexp(1.0, static_cast<int>(-this->Exponent));
-      const auto find = [&](double value)
-      { return static_cast<std::size_t>(FindInterval(value, perWidth) - this->First); };
       forEach(
-        [&](const MacrocellRange<T>& range, bool atBorder)
-        {
-          const auto min = static_cast<double>(range.Min);
-          const auto max = static_cast<double>(range.Max);
-          for (const double part : { 0.125, 0.375, 0.625, 0.875 })
-          {
-            ++this->Values[find(std::clamp(min * (1.0 - part) + max * part, min, max))];
-          }
-          const std::size_t first = find(min);
-          const std::size_t last = find(max);
-          ++this->Crossed[first];
-          --this->Crossed[last];
-          ++this->All;
-          if (atBorder)
-          {
-            ++this->CutOpen[first];
-            --this->CutOpen[last];
-            ++this->AtBorder;
-          }
+        [&](const MacrocellRange<T>& range, bool atBorder) {
+          this->CountRange(
+            static_cast<double>(range.Min), static_cast<double>(range.Max), atBorder);
         });
     });
+}
+
+void IsovalueSurvey::CountRange(double least, double greatest, bool atBorder)
+{
+  this->Reach(least, greatest);
+  const double perWidth = std::ldexp(1.0, static_cast<int>(-this->Exponent));
+  const auto find = [&](double value)
+  { return static_cast<std::size_t>(FindInterval(value, perWidth) - this->First); };
+  for (const double part : { 0.125, 0.375, 0.625, 0.875 })
+  {
+    ++this->Values[find(std::clamp(least * (1.0 - part) + greatest * part, least, greatest))];
+  }
+  const std::size_t first = find(least);
+  const std::size_t last = find(greatest);
+  ++this->Crossed[first];
+  --this->Crossed[last];
+  ++this->All;
+  if (atBorder)
+  {
+    ++this->CutOpen[first];
+    --this->CutOpen[last];
+    ++this->AtBorder;
+  }
 }
 
 void LimitedSurvey::CountBrick(

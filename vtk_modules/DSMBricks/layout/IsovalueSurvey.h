@@ -47,6 +47,9 @@ struct IsovalueSurvey
   /// values beyond the limits do not count.
   void CountBrick(
     const Box& cells, const Index3& end, const std::byte* block, const ValueLimits& limits = {});
+  /// Counts a macrocell, or a group of other cells, by the range of its values, which is finite. `atBorder`: the volume
+  /// ends there.
+  void CountRange(double least, double greatest, bool atBorder);
   /// The same of a brick whose cells all hold data, and whose samples all are `value`, which is finite.
   void CountUniform(const Box& cells, const Index3& end, double value);
   /// Both surveys must be valid.

@@ -24,6 +24,7 @@ struct RecordBrick
   ValueRange Range =
     ValueRange::GetEmpty(); ///< of the values in which rays look for something, if there are any
   std::vector<std::byte> Bytes;
+  std::vector<std::uint32_t> Notes; ///< what its owner has to know of it, beside its bytes
 };
 
 /// Makes bricks out of the records of a cell (SortedCells). One for each thread; may keep its storage.
@@ -58,6 +59,13 @@ public:
   /// The same on every rank.
   virtual RecordKind GetKind() const = 0;
   virtual std::uint64_t GetCount() const = 0;
+
+  /// Bounds of what else lies in the space of bricks; lower > upper: nothing does.
+  virtual void FindOtherBounds(glm::dvec3& lower, glm::dvec3& upper) const
+  {
+    lower = glm::dvec3(1.0);
+    upper = glm::dvec3(-1.0);
+  }
 
   /// The bounds of a primitive in the dataset's space. False if they are not finite.
   virtual bool FindBounds(std::uint64_t primitive, glm::dvec3& lower, glm::dvec3& upper) const = 0;

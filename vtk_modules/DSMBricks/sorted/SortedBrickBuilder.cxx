@@ -138,6 +138,12 @@ void SortedBrickBuilder::FindSpace()
       {
         mine.Add(bounds);
       }
+      Bounds others;
+      this->Reader.FindOtherBounds(others.Lower, others.Upper);
+      if (others.Lower.x <= others.Upper.x)
+      {
+        mine.Add(others);
+      }
     });
   Bounds all;
   for (const Bounds& bounds : this->Messages.AllGatherValue(mine))
@@ -206,18 +212,22 @@ std::unique_ptr<dsm::FragmentSource> SortedBrickBuilder::CreateRecordSource() co
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
 }
 
-void SortedBrickBuilder::BuildBricks(dsm::FunctionRef<void(double)> progress)
+SortedBricks SortedBrickBuilder::Build(dsm::FunctionRef<void(double)> progress)
 {
-  BricksOfCells bricks;
+  using Progress = dsm::FunctionRef<void(double)>;
+  // Approximate shares of the time: reading, building, copying.
+  const auto ofReading = [&](double done) { progress(0.2 + 0.3 * done); };
+  BricksOfCells bricksOfCells;
   {
     std::unique_ptr<dsm::FragmentSource> source;
     this->Messages.RunTogether(this->What, [&] { source = this->CreateRecordSource(); });
-    const RecordBlocks records(
-      this->What, *this->Cells, this->Reader, *source, this->Messages, progress);
-    this->Messages.RunTogether(this->What, [&] { bricks = this->BuildOwnBricks(records); });
+    const RecordBlocks records(this->What, *this->Cells, this->Reader, *source, this->Messages,
+      progress ? Progress(ofReading) : Progress());
+    this->Messages.RunTogether(this->What, [&] { bricksOfCells = this->BuildOwnBricks(records); });
   }
-  this->GatherBricks(std::move(bricks));
+  SortedBricks bricks = this->GatherBricks(std::move(bricksOfCells));
   this->Cells.reset();
+  return bricks;
 }
 
 SortedBrickBuilder::BricksOfCells SortedBrickBuilder::BuildOwnBricks(
@@ -238,8 +248,9 @@ SortedBrickBuilder::BricksOfCells SortedBrickBuilder::BuildOwnBricks(
   return bricks;
 }
 
-void SortedBrickBuilder::GatherBricks(BricksOfCells bricksOfCells)
+SortedBricks SortedBrickBuilder::GatherBricks(BricksOfCells bricksOfCells)
 {
+  SortedBricks sorted;
   const auto all = this->Messages.GatherTogether(this->What,
     [&]
     {
@@ -289,18 +300,20 @@ void SortedBrickBuilder::GatherBricks(BricksOfCells bricksOfCells)
           next[owner] += sizeof(summary);
           if (isOwn)
           {
-            this->Bricks.push_back(
-              { this->BrickBytes.size(), std::move(bricksOfCells[own][index++].Bytes) });
+            RecordBrick& brick = bricksOfCells[own][index++];
+            sorted.Own.push_back({ sorted.Bytes.size(), std::move(brick.Bytes) });
+            sorted.Notes.push_back(std::move(brick.Notes));
           }
           const float lower[4] = { summary.Lower[0], summary.Lower[1], summary.Lower[2], 0.0f };
           const float upper[4] = { summary.Upper[0], summary.Upper[1], summary.Upper[2], 0.0f };
-          this->Boxes.push_back({ Float4::Load(lower), Float4::Load(upper) });
-          this->Ranges.push_back(summary.Range);
-          this->BrickBytes.push_back(summary.Bytes);
+          sorted.Boxes.push_back({ Float4::Load(lower), Float4::Load(upper) });
+          sorted.Ranges.push_back(summary.Range);
+          sorted.Bytes.push_back(summary.Bytes);
         } while (summary.Following > 0);
         own += isOwn ? 1 : 0;
       }
     });
+  return sorted;
 }
 
 } // namespace bricks

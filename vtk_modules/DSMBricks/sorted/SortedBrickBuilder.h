@@ -37,6 +37,16 @@ struct SortedBrickSettings
   std::uint64_t MemoryBytes = 0;
 };
 
+/// Bricks of all ranks, by their numbers: their owners are the ranks in turn.
+struct SortedBricks
+{
+  std::vector<BoundingBox> Boxes;
+  std::vector<ValueRange> Ranges;
+  std::vector<std::uint32_t> Bytes;
+  std::vector<dsm::Fragment> Own;                ///< this rank's
+  std::vector<std::vector<std::uint32_t>> Notes; ///< of these: RecordBrick::Notes
+};
+
 /// The steps from the primitives of all ranks, of any kind, to bricks and the hierarchy over them. All are collective
 /// and throw the same dsm::Error on every rank. The results are bit for bit the same however the primitives were
 /// distributed over ranks, in whatever order they were.
@@ -58,20 +68,21 @@ public:
   std::shared_ptr<dsm::BlockSegment> Publish(
     Store& store, BrickHierarchy<HasRanges>& hierarchy, dsm::FunctionRef<void(double)> progress)
   {
-    using Progress = dsm::FunctionRef<void(double)>;
-    // Approximate shares of the time: reading, building, copying.
-    const auto ofBuilding = [&](double done) { progress(0.2 + 0.3 * done); };
-    const auto ofCopying = [&](double done) { progress(0.9 + 0.1 * done); };
-    this->BuildBricks(progress ? Progress(ofBuilding) : Progress());
+    SortedBricks bricks = this->Build(progress);
     this->Messages.RunTogether(
-      this->What, [&] { hierarchy = BrickHierarchy<HasRanges>(this->Boxes, this->Ranges); });
-    BlockSource source(std::move(this->Bricks));
+      this->What, [&] { hierarchy = BrickHierarchy<HasRanges>(bricks.Boxes, bricks.Ranges); });
+    BlockSource source(std::move(bricks.Own));
     BlockSink sink;
+    const auto ofCopying = [&](double done) { progress(0.9 + 0.1 * done); };
     return store.Publish(this->What,
-      { std::move(this->BrickBytes), dsm::RoundRobinAssigner(this->Messages.GetSize()),
+      { std::move(bricks.Bytes), dsm::RoundRobinAssigner(this->Messages.GetSize()),
         hierarchy.GetBytes() },
-      source, sink, progress ? Progress(ofCopying) : Progress());
+      source, sink,
+      progress ? dsm::FunctionRef<void(double)>(ofCopying) : dsm::FunctionRef<void(double)>());
   }
+
+  /// Builds the bricks, each on the rank that owns its cell. Once. `progress`, which may be empty, receives 0.2 to 0.5.
+  SortedBricks Build(dsm::FunctionRef<void(double)> progress);
 
 private:
   /// In order of the own cells.
@@ -80,10 +91,9 @@ private:
   void CheckMemory();
   void FindSpace();
   void SetSpace(const glm::dvec3& lower, const glm::dvec3& upper);
-  void BuildBricks(dsm::FunctionRef<void(double)> progress);
   std::unique_ptr<dsm::FragmentSource> CreateRecordSource() const;
   BricksOfCells BuildOwnBricks(const RecordBlocks& records) const;
-  void GatherBricks(BricksOfCells bricksOfCells);
+  SortedBricks GatherBricks(BricksOfCells bricksOfCells);
 
   std::string_view What;
   RecordReader& Reader;
@@ -96,13 +106,6 @@ private:
   MortonCode Order;
   std::uint32_t LargestCount = 0;
   std::optional<SortedCells> Cells;
-  ///@{
-  /// For the bricks of all ranks, by their numbers:
-  std::vector<BoundingBox> Boxes;
-  std::vector<ValueRange> Ranges;
-  std::vector<std::uint32_t> BrickBytes;
-  ///@}
-  std::vector<dsm::Fragment> Bricks; ///< this rank's
 };
 
 } // namespace bricks

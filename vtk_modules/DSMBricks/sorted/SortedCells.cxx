@@ -18,7 +18,7 @@ constexpr const char* What = "Sorting primitives";
 /// Behind all codes.
 constexpr std::uint64_t NoCode = ~std::uint64_t(0);
 
-constexpr std::size_t ChunkSize = std::size_t(1) << 16;
+constexpr std::size_t KeyChunk = std::size_t(1) << 16;
 
 /// Bits that are counted in the first round, and in each further one.
 constexpr int FirstBits = 12;
@@ -45,7 +45,7 @@ void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, 
 {
   const std::uint64_t count = reader.GetCount();
   this->Keys.resize(count);
-  ParallelForChunks(threads, count, ChunkSize,
+  ParallelForChunks(threads, count, KeyChunk,
     [&](std::size_t begin, std::size_t end, std::size_t, int)
     {
       for (std::size_t primitive = begin; primitive < end; ++primitive)
@@ -67,7 +67,7 @@ void SortedCells::SortKeys(int threads)
   constexpr std::size_t buckets = std::size_t(1) << bucketBits;
   const auto bucketOf = [](const Key& key) { return key.Code >> (MortonCode::Bits - bucketBits); };
   const std::size_t count = this->Keys.size();
-  const std::size_t chunkSize = std::max(ChunkSize, count / (4 * threads) + 1);
+  const std::size_t chunkSize = std::max(KeyChunk, count / (4 * threads) + 1);
   const std::size_t chunks = (count + chunkSize - 1) / chunkSize;
   std::vector<std::array<std::uint64_t, buckets>> places(chunks);
   ParallelForChunks(threads, count, chunkSize,

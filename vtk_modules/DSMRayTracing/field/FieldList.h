@@ -6,8 +6,9 @@
 // clang-format off
 #include RT_FIELD_HEADER(lattice/Lattice)
 #include RT_FIELD_HEADER(levels/Level)
+#include RT_FIELD_HEADER(tetrahedra/Cell)
 // clang-format on
 
 #ifndef RT_FIELD_CLASSES
-#define RT_FIELD_CLASSES LatticeField, LevelField
+#define RT_FIELD_CLASSES LatticeField, LevelField, CellField
 #endif

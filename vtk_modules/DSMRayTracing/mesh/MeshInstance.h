@@ -3,7 +3,7 @@
 #define rt_MeshInstance_h
 
 #include "DSMBricks/layout/TriangleMesh.h"
-#include "DSMRayTracing/mesh/MeshRay.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <glm/common.hpp>
@@ -58,7 +58,7 @@ public:
   }
 
   /// The same T in both spaces. False when the ray cannot hit the mesh.
-  bool GetMeshRay(const Ray& ray, MeshRay& line) const
+  bool GetMeshRay(const Ray& ray, ShearedRay& line) const
   {
     // Subtracting first keeps the digits of a small mesh far from the world's origin.
     const glm::dvec3 origin = this->WorldToBricks * (ray.Origin - this->WorldOrigin);

@@ -15,7 +15,7 @@ namespace rt
 /// The steps of a packet through the hierarchies of a mesh, with the vector instructions of the
 /// processor, for as many rays at once as its registers hold. There is one for each kind of processor
 /// in the same binary, and one for rays one by one. All find the same bits, those of
-/// TreeletTraversal: rays are made by the same operations as MeshRay, none of them contracted, and
+/// TreeletTraversal: rays are made by the same operations as ShearedRay, none of them contracted, and
 /// beyond that vectors only tell which boxes need not be looked at.
 ///
 /// Pure, but for what a visitor does; any thread.

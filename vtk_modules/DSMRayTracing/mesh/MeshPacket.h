@@ -3,7 +3,7 @@
 #define rt_MeshPacket_h
 
 #include "DSMRayTracing/mesh/MeshInstance.h"
-#include "DSMRayTracing/mesh/MeshRay.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
 #include "DSMRayTracing/ray/RayPacket.h"
@@ -11,7 +11,7 @@
 namespace rt
 {
 
-/// Rays of one mesh that are traced together: MeshRay, one array for each number. All move in the
+/// Rays of one mesh that are traced together: ShearedRay, one array for each number. All move in the
 /// same direction on each axis, and most along the same one. They have nothing else in common: what
 /// one finds does not depend on the others, since boxes only save work, and each ray's triangles are
 /// decided on by NearestTriangle.
@@ -34,7 +34,7 @@ struct MeshPacket
   alignas(64) float Inverse[3][Size];
   alignas(64) float Margin[3][Size];
 
-  // MeshRay:
+  // ShearedRay:
   alignas(64) float FilterShear[2][Size];
   alignas(64) float BoxesEnd[Size];
   alignas(64) double StartT[Size];
@@ -67,12 +67,12 @@ struct MeshPacket
     this->Filters[index] = FilterRay(start, shear, this->Uncertainty[index], brick);
   }
 
-  void End(int index) { this->BoxesEnd[index] = MeshRay::NoBoxes; }
+  void End(int index) { this->BoxesEnd[index] = ShearedRay::NoBoxes; }
   void Shorten(int index, double t)
   {
     this->Max[index] = t;
     this->BoxesEnd[index] =
-      MeshRay::GetBoxesT(t, this->StartT[index], this->BoxesPerT[index], this->Uncertainty[index]);
+      ShearedRay::GetBoxesT(t, this->StartT[index], this->BoxesPerT[index], this->Uncertainty[index]);
   }
 };
 

@@ -133,10 +133,10 @@ private:
       extent = std::fmax(extent, mesh.Upper[axis] - mesh.Lower[axis]);
     }
     Lanes meets = hn::And(hn::Lt(sum, hn::Set(tag, HUGE_VAL)), hn::Gt(longest, zero));
-    const Vector margin = hn::Add(hn::Add(hn::Set(tag, extent * MeshRay::ExtentPart),
-                                    hn::Mul(distance, hn::Set(tag, MeshRay::DistancePart))),
-      hn::Set(tag, MeshRay::SmallestMargin));
-    const Vector slope = hn::Mul(longest, hn::Set(tag, MeshRay::SmallestSlope));
+    const Vector margin = hn::Add(hn::Add(hn::Set(tag, extent * ShearedRay::ExtentPart),
+                                    hn::Mul(distance, hn::Set(tag, ShearedRay::DistancePart))),
+      hn::Set(tag, ShearedRay::SmallestMargin));
+    const Vector slope = hn::Mul(longest, hn::Set(tag, ShearedRay::SmallestSlope));
     Vector enter = hn::Load(tag, this->Packet.Min + first);
     Vector leave = hn::Load(tag, this->Packet.Max + first);
     for (int axis = 0; axis < 3; ++axis)
@@ -223,7 +223,7 @@ private:
     }
     StoreFloats(margin, packet.Uncertainty + first);
     const Vector place = hn::Mul(hn::Sub(hn::Load(tag, this->Leave + first), enter), longest);
-    const Vector room = hn::Mul(hn::Abs(place), hn::Set(tag, MeshRay::PlacePart));
+    const Vector room = hn::Mul(hn::Abs(place), hn::Set(tag, ShearedRay::PlacePart));
     StoreFloats(hn::Add(hn::Add(place, room), margin), packet.BoxesEnd + first);
     return GetBits(alike);
   }

@@ -14,7 +14,7 @@ template <class Store>
 bool MeshSearch<Store>::Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const
 {
   const bricks::TriangleMesh& mesh = instance.GetMesh();
-  MeshRay line;
+  ShearedRay line;
   if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
   {
     return false;
@@ -43,7 +43,7 @@ template <class Store>
 bool MeshSearch<Store>::IsOccluded(const MeshInstance& instance, const Ray& ray) const
 {
   const bricks::TriangleMesh& mesh = instance.GetMesh();
-  MeshRay line;
+  ShearedRay line;
   if (mesh.Bricks.IsEmpty() || !instance.GetMeshRay(ray, line))
   {
     return false;

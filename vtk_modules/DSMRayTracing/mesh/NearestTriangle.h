@@ -6,7 +6,7 @@
 #include "DSMRayTracing/mesh/MeshInstance.h"
 #include "DSMRayTracing/mesh/TriangleHit.h"
 #include "DSMRayTracing/mesh/TriangleIntersector.h"
-#include "DSMRayTracing/mesh/TriangleRay.h"
+#include "DSMRayTracing/ray/TriangleRay.h"
 
 #include <cstdint>
 

@@ -4,7 +4,7 @@
 
 #include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshInstance.h"
-#include "DSMRayTracing/mesh/MeshRay.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
 #include "DSMRayTracing/ray/ChildrenOnRay.h"
@@ -30,7 +30,7 @@ public:
 
   /// Returns whether the brick has a nearer hit than those so far, or an equally near one that
   /// comes first. Hits shorten the ray.
-  bool Intersect(MeshRay& ray, NearestTriangle& nearest) const
+  bool Intersect(ShearedRay& ray, NearestTriangle& nearest) const
   {
     switch (ray.Triangles.Axes[2])
     {
@@ -44,7 +44,7 @@ public:
   }
 
   /// Returns whether the brick has any hit; if so, the ray ends.
-  bool IsOccluded(MeshRay& ray) const
+  bool IsOccluded(ShearedRay& ray) const
   {
     switch (ray.Triangles.Axes[2])
     {
@@ -59,7 +59,7 @@ public:
 
 private:
   template <int Axis>
-  bool IsOccludedAlong(MeshRay& ray) const
+  bool IsOccludedAlong(ShearedRay& ray) const
   {
     bool occluded = false;
     this->FindCandidates<Axis>(ray,
@@ -77,7 +77,7 @@ private:
   }
 
   template <int Axis>
-  bool IntersectAlong(MeshRay& ray, NearestTriangle& nearest) const
+  bool IntersectAlong(ShearedRay& ray, NearestTriangle& nearest) const
   {
     bool better = false;
     this->FindCandidates<Axis>(ray,
@@ -94,7 +94,7 @@ private:
 
   /// Calls `take(triangle)` for those that the ray may hit.
   template <int Axis, class Take>
-  void FindCandidates(const MeshRay& ray, Take&& take) const
+  void FindCandidates(const ShearedRay& ray, Take&& take) const
   {
     const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
     TraverseWideBvh(this->Brick.GetNodes(), ChildrenOnRay(ray.Boxes, ray.BoxesEnd),

@@ -19,7 +19,7 @@ struct FilterRay
   float Error;
 
   FilterRay() = default;
-  /// `uncertainty`: see MeshRay.
+  /// `uncertainty`: see ShearedRay.
   FilterRay(const float origin[3], const float shear[2], float uncertainty,
     const bricks::TriangleBrick& brick)
     : Origin{ origin[0], origin[1], origin[2] }

@@ -3,7 +3,7 @@
 #define rt_TriangleIntersector_h
 
 #include "DSMRayTracing/mesh/TriangleHit.h"
-#include "DSMRayTracing/mesh/TriangleRay.h"
+#include "DSMRayTracing/ray/TriangleRay.h"
 
 namespace rt
 {

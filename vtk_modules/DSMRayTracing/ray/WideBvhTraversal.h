@@ -4,6 +4,7 @@
 
 #include "DSMBricks/accel/WideBvhNode.h"
 
+#include <type_traits>
 #include <utility>
 
 namespace rt
@@ -21,7 +22,7 @@ constexpr int LargestWideBvhStack =
 /// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
 ///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
+/// `visit(reference)`, or `visit(reference, enter)`, may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
 /// but the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
@@ -35,11 +36,19 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
   Entry stack[LargestWideBvhStack];
   int size = 0;
   Reference child = 0;
+  float place = 0.0f;
   while (true)
   {
     if (child & Node::LeafBit)
     {
-      visit(child);
+      if constexpr (std::is_invocable_v<Visit, Reference, float>)
+      {
+        visit(child, place);
+      }
+      else
+      {
+        visit(child);
+      }
     }
     else
     {
@@ -60,14 +69,15 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
           {
             std::swap(entry, nearest);
           }
-          int place = size++;
-          for (; place > bottom && stack[place - 1].Enter < entry.Enter; --place)
+          int top = size++;
+          for (; top > bottom && stack[top - 1].Enter < entry.Enter; --top)
           {
-            stack[place] = stack[place - 1];
+            stack[top] = stack[top - 1];
           }
-          stack[place] = entry;
+          stack[top] = entry;
         }
         child = nearest.Child;
+        place = nearest.Enter;
         continue;
       }
     }
@@ -80,6 +90,7 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
       --size;
     } while (!wanted.IsOpen(stack[size].Enter));
     child = stack[size].Child;
+    place = stack[size].Enter;
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef rt_MeshRay_h
-#define rt_MeshRay_h
+#ifndef rt_ShearedRay_h
+#define rt_ShearedRay_h
 
-#include "DSMRayTracing/mesh/TriangleRay.h"
+#include "DSMRayTracing/ray/TriangleRay.h"
 #include "DSMRayTracing/ray/BoxRay.h"
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace rt
 {
 
-/// A ray in the space of a mesh, relative to the mesh's origin, with what the tests of boxes and
+/// A ray in the space of bricks of triangles or cells, relative to its origin, with what the tests of boxes and
 /// triangles need. T is that of the world ray.
-struct MeshRay
+struct ShearedRay
 {
   TriangleRay Triangles;
   /// Shear along the axes that follow Triangles.Axes[2] in turn, not exchanged.

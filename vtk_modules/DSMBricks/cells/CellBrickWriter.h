@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_CellBrickWriter_h
+#define bricks_CellBrickWriter_h
+
+#include "DSMBricks/accel/BoundingBox.h"
+#include "DSMBricks/accel/WideBvhBuilder.h"
+#include "DSMBricks/cells/CellBrick.h"
+#include "DSMBricks/sorted/RecordReader.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bricks
+{
+
+/// Writes bricks of cells. One for each thread; keeps its storage from one brick to the next.
+class CellBrickWriter
+{
+public:
+  CellBrickWriter()
+    : Tree(1)
+  {
+  }
+
+  /// A brick of cells of `cornersOfCell` corners each, 4 or 8. `points`: three floats each, in their order; `corners`:
+  /// numbers of points, which are put in the order of the hierarchy.
+  RecordBrick Write(
+    const std::vector<float>& points, std::vector<std::uint16_t>& corners, int cornersOfCell);
+
+  /// A brick of so many cells of a structured grid on each axis. `points`: three floats each, x fastest; `shown`: one
+  /// byte a cell, or empty if all are shown. Without bytes if no cell is shown.
+  RecordBrick WriteGrid(const std::vector<float>& points, const std::uint16_t cells[3],
+    const std::vector<std::uint8_t>& shown);
+
+private:
+  /// Orders cells so that those of each group of four are near one another.
+  void OrderCells(
+    int cornersOfCell, const std::vector<float>& points, const std::vector<std::uint16_t>& corners);
+  void Divide(std::size_t begin, std::size_t end);
+  /// Writes a brick of which all but the nodes is known. Without bytes if it has no cells.
+  RecordBrick Assemble(CellBrickHeader header, const std::vector<float>& points,
+    const std::vector<std::uint16_t>& corners, const std::vector<std::uint8_t>& shown);
+  /// Boxes of the groups that have cells, and which groups they are, of a block without nodes. Returns its cells.
+  std::uint32_t MeasureGroups(const std::byte* block);
+
+  std::vector<float> Centers; ///< of the cells, times their corners; three each
+  std::vector<std::uint32_t> Order;
+  std::vector<std::uint16_t> Ordered;
+  std::vector<BoundingBox> Boxes;
+  std::vector<std::uint32_t> Groups;
+  WideBvhBuilder<std::uint16_t> Tree;
+};
+
+} // namespace bricks
+
+#endif

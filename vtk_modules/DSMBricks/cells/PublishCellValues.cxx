@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/cells/CellBrick.h"
+#include "DSMBricks/cells/PublishCells.h"
+#include "DSMBricks/sorted/RecordExchange.h"
+#include "DSMCore/base/Error.h"
+#include "DSMCore/publish/FragmentStream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace bricks
+{
+
+namespace
+{
+
+constexpr float NoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// Yields this rank's values for each brick: their numbers in it, the values, and their gradients, if there are any.
+class ValueSource final : public dsm::FragmentSource
+{
+public:
+  ValueSource(const CornerRoutes& routes, dsm::FunctionRef<double(std::uint64_t)> getValue,
+    const std::vector<PackedGradient>& gradients, bool hasGradients)
+    : Routes(routes)
+    , GetValue(getValue)
+    , Gradients(gradients)
+    , HasGradients(hasGradients)
+  {
+  }
+
+  bool Next(dsm::Fragment& fragment) override
+  {
+    if (this->Brick == this->Routes.Bricks.size())
+    {
+      return false;
+    }
+    const std::size_t begin = this->Routes.Bricks[this->Brick].Begin;
+    const std::size_t end = this->Brick + 1 < this->Routes.Bricks.size()
+      ? this->Routes.Bricks[this->Brick + 1].Begin
+      : this->Routes.Points.size();
+    const std::size_t count = end - begin;
+    fragment.Block = this->Routes.Bricks[this->Brick++].Id;
+    fragment.Bytes.resize(count * CountBytes(this->HasGradients));
+    std::byte* const slots = fragment.Bytes.data();
+    std::byte* const values = slots + count * sizeof(std::uint16_t);
+    std::byte* const gradients = values + count * sizeof(float);
+    std::memcpy(slots, this->Routes.Slots.data() + begin, count * sizeof(std::uint16_t));
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      const std::uint32_t point = this->Routes.Points[begin + number];
+      const auto read = static_cast<float>(this->GetValue(point));
+      const float value = std::isfinite(read) ? read + 0.0f : NoValue;
+      std::memcpy(values + number * sizeof(value), &value, sizeof(value));
+      if (this->HasGradients)
+      {
+        std::memcpy(gradients + number * sizeof(PackedGradient), &this->Gradients[point],
+          sizeof(PackedGradient));
+      }
+    }
+    return true;
+  }
+  double GetProgress() const override
+  {
+    return this->Routes.Bricks.empty()
+      ? 1.0
+      : static_cast<double>(this->Brick) / static_cast<double>(this->Routes.Bricks.size());
+  }
+
+  /// Bytes of each value in a fragment.
+  static std::size_t CountBytes(bool hasGradients)
+  {
+    return sizeof(std::uint16_t) + sizeof(float) + (hasGradients ? sizeof(PackedGradient) : 0);
+  }
+
+private:
+  const CornerRoutes& Routes;
+  dsm::FunctionRef<double(std::uint64_t)> GetValue;
+  const std::vector<PackedGradient>& Gradients;
+  bool HasGradients;
+  std::size_t Brick = 0;
+};
+
+/// What arrives for a brick that this rank owns, by the points' numbers in it.
+struct Arrived
+{
+  std::vector<float> Values;
+  std::vector<PackedGradient> Gradients;
+
+  void Absorb(const std::byte* bytes, std::size_t size, bool hasGradients)
+  {
+    const std::size_t count = size / ValueSource::CountBytes(hasGradients);
+    const std::byte* const values = bytes + count * sizeof(std::uint16_t);
+    const std::byte* const gradients = values + count * sizeof(float);
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      std::uint16_t slot;
+      std::memcpy(&slot, bytes + number * sizeof(slot), sizeof(slot));
+      this->Reach(slot + std::size_t(1), hasGradients);
+      std::memcpy(&this->Values[slot], values + number * sizeof(float), sizeof(float));
+      if (hasGradients)
+      {
+        std::memcpy(&this->Gradients[slot], gradients + number * sizeof(PackedGradient),
+          sizeof(PackedGradient));
+      }
+    }
+  }
+  void Reach(std::size_t count, bool hasGradients)
+  {
+    if (this->Values.size() < count)
+    {
+      this->Values.resize(count, NoValue);
+      this->Gradients.resize(hasGradients ? count : 0);
+    }
+  }
+};
+
+std::uint32_t Align(std::size_t bytes)
+{
+  return static_cast<std::uint32_t>((bytes + 15) / 16 * 16);
+}
+
+/// Rounds ranges of values outward to bytes.
+class RangeScale
+{
+public:
+  RangeScale(float first, float last)
+    : First(first)
+    , Step((last - first) / CellValueHeader::Steps)
+  {
+    while (this->First + this->Step * CellValueHeader::Steps < last)
+    {
+      this->Step = std::nextafter(this->Step, std::numeric_limits<float>::infinity());
+    }
+  }
+
+  float GetStep() const { return this->Step; }
+  std::uint8_t RoundDown(float value) const
+  {
+    float number = this->Step > 0.0f ? std::floor((value - this->First) / this->Step) : 0.0f;
+    number = std::clamp(number, 0.0f, CellValueHeader::Steps);
+    while (number > 0.0f && this->First + this->Step * number > value)
+    {
+      --number;
+    }
+    return static_cast<std::uint8_t>(number);
+  }
+  std::uint8_t RoundUp(float value) const
+  {
+    float number = this->Step > 0.0f ? std::ceil((value - this->First) / this->Step) : 0.0f;
+    number = std::clamp(number, 0.0f, CellValueHeader::Steps);
+    while (number < CellValueHeader::Steps && this->First + this->Step * number < value)
+    {
+      ++number;
+    }
+    return static_cast<std::uint8_t>(number);
+  }
+
+private:
+  float First;
+  float Step;
+};
+
+/// What is known of the values of some bricks.
+struct Summary
+{
+  IsovalueSurvey Survey;
+  bool HasHoles = false;
+
+  void Add(const Summary& other)
+  {
+    this->Survey.Add(other.Survey);
+    this->HasHoles = this->HasHoles || other.HasHoles;
+  }
+};
+
+/// Writes the values of a brick. `arrived` is completed.
+std::vector<std::byte> WriteValues(
+  const CellBrick& brick, Arrived& arrived, bool hasGradients, Summary& summary)
+{
+  const CellBrickHeader& header = brick.GetHeader();
+  arrived.Reach(header.Points, hasGradients);
+  std::vector<ValueRange> groups(header.Groups, ValueRange::GetEmpty());
+  ValueRange all = ValueRange::GetEmpty();
+  for (std::uint32_t group = 0; group < header.Groups; ++group)
+  {
+    std::uint16_t corners[CellBrick::GroupSize][CellBrick::MostCorners];
+    const int count = brick.ReadGroup(group, corners);
+    for (int cell = 0; cell < count; ++cell)
+    {
+      ValueRange range = ValueRange::GetEmpty();
+      bool isWhole = true;
+      for (int corner = 0; corner < header.Corners; ++corner)
+      {
+        const float value = arrived.Values[corners[cell][corner]];
+        isWhole = isWhole && !std::isnan(value);
+        range.Add({ value, value });
+      }
+      summary.HasHoles = summary.HasHoles || !isWhole;
+      if (isWhole)
+      {
+        groups[group].Add(range);
+        summary.Survey.CountRange(range.First, range.Last, false);
+      }
+    }
+    all.Add(groups[group]);
+  }
+
+  CellValueHeader values{};
+  const std::uint32_t valueBytes = Align(header.Points * sizeof(float));
+  const std::uint32_t gradientBytes = hasGradients ? valueBytes : 0;
+  values.GradientOffset = hasGradients ? CellValueHeader::ValueOffset + valueBytes : 0;
+  values.RangeOffset = CellValueHeader::ValueOffset + valueBytes + gradientBytes;
+  values.BlockBytes = values.RangeOffset + header.Nodes * 2u * WideBvhWidth;
+  const RangeScale scale(
+    all.First <= all.Last ? all.First : 0.0f, all.First <= all.Last ? all.Last : 0.0f);
+  values.First = all.First;
+  values.Last = all.Last;
+  values.Step = scale.GetStep();
+  std::vector<std::byte> bytes(values.BlockBytes);
+  std::memcpy(bytes.data(), &values, sizeof(values));
+  std::memcpy(bytes.data() + CellValueHeader::ValueOffset, arrived.Values.data(),
+    header.Points * sizeof(float));
+  if (hasGradients)
+  {
+    std::memcpy(bytes.data() + values.GradientOffset, arrived.Gradients.data(),
+      header.Points * sizeof(PackedGradient));
+  }
+  // Children stand behind their parents.
+  std::vector<ValueRange> nodes(header.Nodes, ValueRange::GetEmpty());
+  for (std::uint32_t node = header.Nodes; node-- > 0;)
+  {
+    const CellBrick::Node& shape = brick.GetNodes()[node];
+    std::byte* const ranges = bytes.data() + values.RangeOffset + 2 * WideBvhWidth * node;
+    for (int child = 0; child < WideBvhWidth; ++child)
+    {
+      ValueRange range = ValueRange::GetEmpty();
+      if (child < shape.Children)
+      {
+        const std::uint16_t reference = shape.References[child];
+        range = reference & CellBrick::Node::LeafBit ? groups[CellBrick::GetGroup(reference)]
+                                                     : nodes[reference];
+      }
+      const bool isAny = range.First <= range.Last;
+      ranges[child] = std::byte(isAny ? scale.RoundDown(range.First) : 255);
+      ranges[WideBvhWidth + child] = std::byte(isAny ? scale.RoundUp(range.Last) : 0);
+      nodes[node].Add(range);
+    }
+  }
+  return bytes;
+}
+
+/// Calls `visit(id, block, thread)` for this rank's bricks of cells, by several threads where they are in memory.
+template <class Visit>
+void ForEachOwn(
+  const dsm::BlockSegment& segment, int rank, int ranks, int threads, const Visit& visit)
+{
+  if (segment.GetDirectory().IsFromSource())
+  {
+    segment.ForEachResident(
+      [&](dsm::BlockId id, const std::byte* block, std::size_t) { visit(id, block, 0); });
+    return;
+  }
+  const auto first = static_cast<std::size_t>(rank);
+  const std::size_t bricks = segment.GetDirectory().GetCount();
+  const std::size_t own = bricks > first
+    ? (bricks - first + static_cast<std::size_t>(ranks) - 1) / static_cast<std::size_t>(ranks)
+    : 0;
+  ParallelFor(threads, own,
+    [&](std::size_t number, int thread)
+    {
+      const dsm::BlockId id = first + number * static_cast<std::size_t>(ranks);
+      visit(id, segment.GetOwned(id), thread);
+    });
+}
+
+/// What a rank knows of a block of values, for all ranks.
+struct BlockSummary
+{
+  std::uint32_t Bytes;
+  ValueRange Range;
+};
+
+} // namespace
+
+std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
+  const std::shared_ptr<const CellBricks>& cells, const CornerRoutes& routes,
+  dsm::FunctionRef<double(std::uint64_t)> getValue, const std::vector<PackedGradient>& gradients,
+  int threads, dsm::BlockStore& store, dsm::Messenger& messenger, dsm::BlockStore::Place place,
+  dsm::FunctionRef<void(double)> progress)
+{
+  using Progress = dsm::FunctionRef<void(double)>;
+  const int ranks = messenger.GetSize();
+  const int rank = messenger.GetRank();
+  const int workers = std::max(threads, 1);
+  const dsm::BlockDirectory& topology = cells->Segment->GetDirectory();
+  const auto flags = messenger.AllGatherValue(std::uint8_t(gradients.empty() ? 0 : 1));
+  const bool hasGradients = *std::max_element(flags.begin(), flags.end()) != 0;
+  const std::size_t bricks = topology.GetCount();
+  const auto step = static_cast<std::size_t>(ranks);
+  std::vector<Arrived> arrived;
+  std::optional<ValueSource> values;
+  messenger.RunTogether(what,
+    [&]
+    {
+      arrived.resize((bricks + step - 1) / step);
+      values.emplace(routes, getValue, gradients, hasGradients);
+    });
+  const auto absorb = [&](dsm::BlockId id, const std::byte* bytes, std::size_t count)
+  { arrived[id / step].Absorb(bytes, count, hasGradients); };
+  const auto ofMoving = [&](double done) { progress(0.5 * done); };
+  const dsm::FirstFailure failure = dsm::FragmentStream::Run(
+    messenger, topology, *values, absorb, progress ? Progress(ofMoving) : Progress());
+
+  std::vector<Summary> ofThread;
+  std::vector<dsm::Fragment> blocks;
+  const auto all = messenger.GatherTogether(what,
+    [&]
+    {
+      failure.Throw();
+      ofThread.resize(static_cast<std::size_t>(workers));
+      blocks.resize(arrived.size());
+      std::vector<BlockSummary> mine(arrived.size());
+      std::size_t own = 0;
+      for (dsm::BlockId id = static_cast<dsm::BlockId>(rank); id < bricks; id += step)
+      {
+        ++own;
+      }
+      ForEachOwn(*cells->Segment, rank, ranks, workers,
+        [&](dsm::BlockId id, const std::byte* block, int thread)
+        {
+          const std::size_t number = id / step;
+          blocks[number] = { id,
+            WriteValues(CellBrick(block), arrived[number], hasGradients,
+              ofThread[static_cast<std::size_t>(thread)]) };
+          arrived[number] = Arrived();
+          const CellValueHeader& header = CellValueBrick(blocks[number].Bytes.data()).GetHeader();
+          mine[number] = { header.BlockBytes, { header.First, header.Last } };
+        });
+      blocks.resize(own);
+      std::vector<std::byte> bytes(own * sizeof(BlockSummary));
+      std::memcpy(bytes.data(), mine.data(), bytes.size());
+      return bytes;
+    });
+  const auto summaries = messenger.GatherValueTogether(what,
+    [&]
+    {
+      Summary mine;
+      for (const Summary& one : ofThread)
+      {
+        mine.Add(one);
+      }
+      return mine;
+    });
+
+  std::shared_ptr<CellValues> published;
+  std::optional<dsm::BlockDirectory> directory;
+  std::optional<BlockSource> source;
+  messenger.RunTogether(what,
+    [&]
+    {
+      published = std::make_shared<CellValues>();
+      published->Cells = cells;
+      published->HasGradients = hasGradients;
+      Summary sum;
+      for (const Summary& one : summaries)
+      {
+        sum.Add(one);
+      }
+      published->Survey = sum.Survey;
+      published->HasHoles = sum.HasHoles;
+      std::vector<std::uint32_t> bytes;
+      std::vector<ValueRange> ranges;
+      for (std::size_t id = 0; id < bricks; ++id)
+      {
+        BlockSummary summary;
+        std::memcpy(&summary, all[id % step].data() + id / step * sizeof(summary), sizeof(summary));
+        bytes.push_back(summary.Bytes);
+        ranges.push_back(summary.Range);
+      }
+      published->Hierarchy = RangedBrickBvh(cells->Boxes, ranges);
+      directory.emplace(
+        std::move(bytes), dsm::RoundRobinAssigner(ranks), published->Hierarchy.GetBytes());
+      directory->SetPaired();
+      source.emplace(std::move(blocks));
+    });
+  BlockSink sink;
+  const auto ofCopying = [&](double done) { progress(0.5 + 0.5 * done); };
+  published->Segment = store.Publish(
+    what, std::move(*directory), *source, sink, progress ? Progress(ofCopying) : Progress(), place);
+  return published;
+}
+
+} // namespace bricks
