@@ -36,7 +36,7 @@ public:
     , Planes(object.Field, object.Planes)
     , Values(store, worker)
     , ReadsField(object.DependsOnValues() || FieldType::HasHoles(object.Field.GetValues()))
-    , Clearance(ClearancePart * object.Field.GetFinestLength())
+    , Clearance(PlaneClearance * object.Field.GetFinestLength())
   {
   }
 
@@ -147,7 +147,7 @@ public:
 
 private:
   /// Relative to the shortest edge of a cell.
-  static constexpr double ClearancePart = 1e-4;
+  static constexpr double PlaneClearance = 1e-4;
 
   /// Finds the first hits of those of the rays that are `wanted`; returns which have one.
   RayMask Find(const Ray* rays, RayMask wanted, Hit* hits) const

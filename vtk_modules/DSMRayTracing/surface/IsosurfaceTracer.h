@@ -2,6 +2,7 @@
 #ifndef rt_IsosurfaceTracer_h
 #define rt_IsosurfaceTracer_h
 
+#include "DSMRayTracing/field/Field.h"
 #include "DSMRayTracing/field/IsosurfaceHit.h"
 #include "DSMRayTracing/object/ObjectTracer.h"
 #include "DSMRayTracing/surface/IsosurfaceOf.h"
@@ -31,7 +32,7 @@ public:
     , Surfaces(store, worker)
     , Values(store, worker)
     , Sheets(object.GetSheetTransmittances())
-    , Clearance(ClearancePart * object.Field.GetFinestLength())
+    , Clearance(ClearancePart<FieldType> * object.Field.GetFinestLength())
   {
   }
 
@@ -145,9 +146,6 @@ public:
   }
 
 private:
-  /// Relative to the shortest edge of a cell. Roots are found to 1e-7 of the way through a cell.
-  static constexpr double ClearancePart = 1e-4;
-
   const IsosurfaceOf<FieldType>& Object;
   typename FieldType::template Surfaces<Store> Surfaces;
   typename FieldType::template Sampler<Store> Values;

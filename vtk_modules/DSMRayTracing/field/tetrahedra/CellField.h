@@ -34,6 +34,10 @@ struct CellPlace
   std::uint16_t Corners[4]; ///< numbers of the tetrahedron's points in the brick
 };
 
+struct CellField;
+template <>
+constexpr double ClearancePart<CellField> = 0.5;
+
 /// Values at the points of cells of any shape, as of curvilinear and unstructured grids. Cells are split into
 /// tetrahedra, alike on both sides of each face (bricks::SplitHexahedron), in which values are linear. A kind of field:
 /// see Field.h.
