@@ -51,6 +51,12 @@ Camera GetCamera(const rt::LatticeField& field, double aspect, const Position& p
   {
     halfExtents += 0.5 * last[axis] * glm::abs(glm::dvec3(field.IndexToWorld[axis]));
   }
+  return GetCamera(center, halfExtents, aspect, position);
+}
+
+Camera GetCamera(
+  const glm::dvec3& center, const glm::dvec3& halfExtents, double aspect, const Position& position)
+{
   const double distance =
     position.Distance * std::max({ halfExtents.x, halfExtents.y, halfExtents.z });
   const double elevation = glm::radians(position.Elevation);

@@ -31,6 +31,8 @@ struct Camera
 
 /// Looks at the volume's center, view angle 30 degrees.
 Camera GetCamera(const rt::LatticeField& field, double aspect, const Position& position);
+Camera GetCamera(
+  const glm::dvec3& center, const glm::dvec3& halfExtents, double aspect, const Position& position);
 
 /// The picture that a camera takes, and the light in it. Shadows come from a lamp beside the camera, else the lamp is
 /// at the camera.

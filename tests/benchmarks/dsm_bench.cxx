@@ -5,6 +5,7 @@
 #include "BenchmarkOptions.h"
 #include "BenchmarkVolume.h"
 #include "DelayedTransport.h"
+#include "CellBenchmark.h"
 #include "MediumBenchmark.h"
 #include "MeshBenchmark.h"
 #include "PictureFile.h"
@@ -431,6 +432,7 @@ int main(int argc, char** argv)
   app.require_subcommand(1);
   BenchmarkOptions isosurface;
   AccessBenchmark::Options access;
+  CellBenchmark::Options cells;
   MediumBenchmark::Options medium;
   MeshBenchmark::Options mesh;
   WriteOptions write;
@@ -448,6 +450,12 @@ int main(int argc, char** argv)
     });
   add("access", access, "the paper's Table 1",
     [&](const AccessBenchmark::Options& options) { AccessBenchmark::Run(options, messenger); });
+  add("cells", cells, "frames of curvilinear and unstructured grids",
+    [&](const CellBenchmark::Options& options)
+    {
+      network.SetLatency(1e-6 * options.Latency);
+      CellBenchmark::Run(options, messenger);
+    });
   add("medium", medium, "frames of a volume as a medium",
     [&](const MediumBenchmark::Options& options)
     {
