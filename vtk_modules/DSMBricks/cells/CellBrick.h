@@ -12,7 +12,7 @@
 namespace bricks
 {
 
-/// Header of a brick of cells: their points and corners, and a hierarchy over groups of up to four cells, but no
+/// Header of a brick of cells: their points and corners, and a hierarchy over groups of up to eight cells, but no
 /// values. Layout of the block, in this order:
 ///
 ///   this header   64 bytes
@@ -42,7 +42,7 @@ struct CellBrickHeader
 
   static constexpr std::uint32_t NodeOffset = 64;
   /// Cells of a group, at most.
-  static constexpr int GroupSize = 4;
+  static constexpr int GroupSize = 8;
   /// Groups are numbered with 13 bits in the leaves of the tree.
   static constexpr std::uint32_t MostGroups = 8191;
   static constexpr std::uint32_t MostCells = GroupSize * MostGroups;
@@ -103,12 +103,12 @@ public:
     return count;
   }
 
-  /// Groups of a grid are boxes of 2 x 2 x 1 cells, x fastest.
+  /// Groups of a grid are boxes of 2 x 2 x 2 cells, x fastest.
   static void GetGroupsOfGrid(const std::uint16_t cells[3], std::uint32_t groups[3])
   {
     groups[0] = (cells[0] + 1u) / 2u;
     groups[1] = (cells[1] + 1u) / 2u;
-    groups[2] = cells[2];
+    groups[2] = (cells[2] + 1u) / 2u;
   }
 
 private:
@@ -120,29 +120,29 @@ private:
     std::uint32_t groups[3];
     GetGroupsOfGrid(header.GridCells, groups);
     const std::uint32_t first[3] = { group % groups[0] * 2u, group / groups[0] % groups[1] * 2u,
-      group / (groups[0] * groups[1]) };
+      group / (groups[0] * groups[1]) * 2u };
     const std::uint32_t row = header.GridCells[0] + 1u;
     const std::uint32_t slice = row * (header.GridCells[1] + 1u);
     const auto* const shown =
       reinterpret_cast<const std::uint8_t*>(this->Block + header.ShownOffset);
     int count = 0;
-    for (std::uint32_t y = first[1]; y < first[1] + 2u && y < header.GridCells[1]; ++y)
+    for (std::uint32_t part = 0; part < GroupSize; ++part)
     {
-      for (std::uint32_t x = first[0]; x < first[0] + 2u && x < header.GridCells[0]; ++x)
+      const std::uint32_t x = first[0] + (part & 1u);
+      const std::uint32_t y = first[1] + (part >> 1 & 1u);
+      const std::uint32_t z = first[2] + (part >> 2);
+      const std::uint32_t cell = x + header.GridCells[0] * (y + header.GridCells[1] * z);
+      if (x < header.GridCells[0] && y < header.GridCells[1] && z < header.GridCells[2] &&
+        (header.ShownOffset == 0 || shown[cell] != 0))
       {
-        const std::uint32_t cell = x + header.GridCells[0] * (y + header.GridCells[1] * first[2]);
-        if (header.ShownOffset == 0 || shown[cell] != 0)
+        const std::uint32_t point = x + row * y + slice * z;
+        const std::uint32_t numbers[MostCorners] = { point, point + 1, point + row + 1, point + row,
+          point + slice, point + slice + 1, point + slice + row + 1, point + slice + row };
+        for (int corner = 0; corner < MostCorners; ++corner)
         {
-          const std::uint32_t point = x + row * y + slice * first[2];
-          const std::uint32_t numbers[MostCorners] = { point, point + 1, point + row + 1,
-            point + row, point + slice, point + slice + 1, point + slice + row + 1,
-            point + slice + row };
-          for (int corner = 0; corner < MostCorners; ++corner)
-          {
-            corners[count][corner] = static_cast<std::uint16_t>(numbers[corner]);
-          }
-          ++count;
+          corners[count][corner] = static_cast<std::uint16_t>(numbers[corner]);
         }
+        ++count;
       }
     }
     return count;

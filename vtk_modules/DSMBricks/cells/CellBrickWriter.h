@@ -34,7 +34,7 @@ public:
     const std::vector<std::uint8_t>& shown);
 
 private:
-  /// Orders cells so that those of each group of four are near one another.
+  /// Orders cells so that those of each group are near one another.
   void OrderCells(
     int cornersOfCell, const std::vector<float>& points, const std::vector<std::uint16_t>& corners);
   void Divide(std::size_t begin, std::size_t end);

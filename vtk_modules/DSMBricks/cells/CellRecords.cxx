@@ -33,7 +33,7 @@ bool IsBefore(const CornerRecord& one, const CornerRecord& other)
 /// Bytes of a cell in a brick, approximately: corners, points, and nodes.
 double EstimateBytes(int corners)
 {
-  return corners == 4 ? 8.0 + 0.25 * 12.0 + 3.5 : 16.0 + 1.3 * 12.0 + 3.5;
+  return corners == 4 ? 8.0 + 0.25 * 12.0 + 2.0 : 16.0 + 1.3 * 12.0 + 2.0;
 }
 
 void GetCenter(const CornerRecord* corners, int count, double center[3])

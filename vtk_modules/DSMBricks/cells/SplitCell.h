@@ -2,6 +2,7 @@
 #ifndef bricks_SplitCell_h
 #define bricks_SplitCell_h
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -37,51 +38,58 @@ inline bool SortCorners(const Number* places, std::uint8_t corners[4])
     places[corners[2]] != places[corners[3]];
 }
 
-/// Splits a hexahedron into tetrahedra, so that the diagonal of each face goes through the first of the face's points:
-/// cells on both sides of a face split it alike (Dompierre et al. 1999, "How to subdivide pyramids, prisms and
-/// hexahedra into tetrahedra"). `places` are the numbers of the corners in an order of all points, which need
-/// only be the same in both cells; equal ones are the same point. Writes corners in VTK's order, those of a
-/// tetrahedron in ascending order of their places. Returns the number of tetrahedra: those of which two corners are the
-/// same are left out.
-template <class Number>
-inline int SplitHexahedron(const Number places[8], std::uint8_t tetrahedra[MostTetrahedra][4])
+/// Splits a hexahedron into six tetrahedra, so that the diagonal of each face goes through the first of the face's
+/// points: cells on both sides of a face split it alike (Dompierre et al. 1999, "How to subdivide pyramids, prisms and
+/// hexahedra into tetrahedra"). `isBefore(one, other)`: whether a corner comes before another in an order of all points,
+/// which need only be the same in both cells; corners at the same point are equal. Corners are in VTK's order.
+/// Tetrahedra are flat where two of their corners are the same point.
+template <class IsBefore>
+inline void SplitHexahedronBy(const IsBefore& isBefore, std::uint8_t tetrahedra[MostTetrahedra][4])
 {
   int first = 0;
   for (int corner = 1; corner < 8; ++corner)
   {
-    first = places[HexahedronCorner(corner)] < places[HexahedronCorner(first)] ? corner : first;
+    first = isBefore(HexahedronCorner(corner), HexahedronCorner(first)) ? corner : first;
   }
   // Corners by bits, mirrored so that the first point of all is at 0. All faces around it have their diagonals
   // through it: tetrahedra from it to the triangles of the other three faces fill the cell.
   const auto at = [first](int corner)
   { return static_cast<std::uint8_t>(HexahedronCorner(corner ^ first)); };
-  const auto isBefore = [&](int one, int other) { return places[at(one)] < places[at(other)]; };
-  int count = 0;
-  const auto add = [&](int one, int two, int three)
+  const auto set = [&](int number, int one, int two, int three)
   {
-    std::uint8_t* const corners = tetrahedra[count];
+    std::uint8_t* const corners = tetrahedra[number];
     corners[0] = at(0);
     corners[1] = at(one);
     corners[2] = at(two);
     corners[3] = at(three);
-    count += SortCorners(places, corners) ? 1 : 0;
   };
   for (int axis = 0; axis < 3; ++axis)
   {
     const int near = 1 << axis;
     const int one = near | 1 << (axis + 1) % 3;
     const int two = near | 1 << (axis + 2) % 3;
-    const int lowest = isBefore(one, two) ? one : two;
-    const int ofOther = isBefore(7, near) ? 7 : near;
-    if (isBefore(lowest, ofOther))
+    const int lowest = isBefore(at(one), at(two)) ? one : two;
+    const int ofOther = isBefore(at(7), at(near)) ? 7 : near;
+    const bool isDivided = isBefore(at(lowest), at(ofOther));
+    set(2 * axis, isDivided ? one : near, isDivided ? two : 7, isDivided ? near : one);
+    set(2 * axis + 1, isDivided ? one : near, isDivided ? two : 7, isDivided ? 7 : two);
+  }
+}
+
+/// The same by numbers of the corners in such an order; equal ones are the same point. Writes the corners of a
+/// tetrahedron in ascending order. Returns the number of tetrahedra: those of which two corners are the same are left
+/// out.
+template <class Number>
+inline int SplitHexahedron(const Number places[8], std::uint8_t tetrahedra[MostTetrahedra][4])
+{
+  std::uint8_t all[MostTetrahedra][4];
+  SplitHexahedronBy([&](int one, int other) { return places[one] < places[other]; }, all);
+  int count = 0;
+  for (auto& corners : all)
+  {
+    if (SortCorners(places, corners))
     {
-      add(one, two, near);
-      add(one, two, 7);
-    }
-    else
-    {
-      add(near, 7, one);
-      add(near, 7, two);
+      std::copy_n(corners, 4, tetrahedra[count++]);
     }
   }
   return count;

@@ -22,6 +22,8 @@ class ObjectDigest;
 template <class Store>
 class CellSampler;
 template <class Store>
+class CellSurfaces;
+template <class Store>
 class CellWalk;
 
 /// A place among the tetrahedra that cells are split into. Plain.
@@ -49,6 +51,8 @@ struct CellField : WalkedField<CellField>
   using Walk = CellWalk<Store>;
   template <class Store>
   using Sampler = CellSampler<Store>;
+  template <class Store>
+  using Surfaces = CellSurfaces<Store>;
 
   /// From the space of the bricks to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };

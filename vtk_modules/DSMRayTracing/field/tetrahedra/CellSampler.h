@@ -143,23 +143,31 @@ private:
         {
           if (HasValues(numbers.GetValues(), corners[cell], brick.GetHeader().Corners))
           {
-            SplitCell(brick, corners[cell],
-              [&](const std::uint16_t* points)
-              {
-                double weights[4];
-                const bool isSolid =
-                  TetrahedronShape(brick, points).GetWeights(place.Point, weights);
-                const double least = std::min({ weights[0], weights[1], weights[2], weights[3] });
-                if (isSolid && least > best)
-                {
-                  best = least;
-                  found.Brick = number;
-                  std::copy_n(points, 4, found.Corners);
-                }
-              });
+            this->FindInCell(brick, corners[cell], number, place, best, found);
           }
         }
       });
+  }
+
+  static void FindInCell(const bricks::CellBrick& brick, const std::uint16_t* cell,
+    std::uint32_t number, const CellPlace& place, double& best, CellPlace& found)
+  {
+    std::uint8_t tetrahedra[bricks::MostTetrahedra][4];
+    const int parts = SplitCell(brick, cell, tetrahedra);
+    for (int part = 0; part < parts; ++part)
+    {
+      const std::uint8_t* const at = tetrahedra[part];
+      const std::uint16_t points[4] = { cell[at[0]], cell[at[1]], cell[at[2]], cell[at[3]] };
+      double weights[4];
+      const bool isSolid = TetrahedronShape(brick, points).GetWeights(place.Point, weights);
+      const double least = std::min({ weights[0], weights[1], weights[2], weights[3] });
+      if (isSolid && least > best)
+      {
+        best = least;
+        found.Brick = number;
+        std::copy_n(points, 4, found.Corners);
+      }
+    }
   }
 
   /// How far a place may be beyond a face, as a part of the tetrahedron's height.

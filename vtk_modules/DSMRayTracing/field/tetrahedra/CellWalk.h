@@ -4,10 +4,8 @@
 
 #include "DSMBricks/accel/BrickHierarchy.h"
 #include "DSMBricks/base/ValueRange.h"
-#include "DSMBricks/cells/CellBrick.h"
+#include "DSMRayTracing/field/tetrahedra/CellCrossings.h"
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
-#include "DSMRayTracing/field/tetrahedra/SplitCells.h"
-#include "DSMRayTracing/field/tetrahedra/TetrahedronCrossing.h"
 #include "DSMRayTracing/field/walk/FieldSegment.h"
 #include "DSMRayTracing/ray/ChildrenInRange.h"
 #include "DSMRayTracing/ray/ChildrenOnRay.h"
@@ -76,15 +74,6 @@ private:
     std::uint32_t Brick;
   };
 
-  static bool SetRay(const CellField& field, const Ray& ray, ShearedRay& there)
-  {
-    const bricks::CellBricks& cells = *field.Voxels->Cells;
-    const glm::dvec3 origin = field.ToIndex(ray.Origin);
-    const glm::dvec3 direction = glm::dmat3(field.WorldToIndex) * ray.Direction;
-    return !field.Voxels->Hierarchy.IsEmpty() &&
-      there.Set(&origin.x, &direction.x, ray.Min, ray.Max, &cells.Lower.x, &cells.Upper.x);
-  }
-
   /// The bricks on the ray, in the order in which it enters them.
   template <class Predicate>
   void FindBricks(
@@ -100,50 +89,6 @@ private:
       { return std::tie(one.Enter, one.Brick) < std::tie(other.Enter, other.Brick); });
   }
 
-  /// The children of a node of a brick that a ray meets and that may hold what is looked for.
-  template <class Predicate>
-  class Wanted
-  {
-  public:
-    Wanted(const ShearedRay& ray, const bricks::CellBrick& brick,
-      const bricks::CellValueBrick& values, const Predicate& mayHold)
-      : Ray(ray)
-      , Nodes(brick.GetNodes())
-      , Values(values)
-      , First(values.GetHeader().First)
-      , Step(values.GetHeader().Step)
-      , MayHold(mayHold)
-    {
-    }
-    unsigned FindChildren(
-      const bricks::CellBrick::Node& node, float enter[bricks::WideBvhWidth]) const
-    {
-      const unsigned met = this->Ray.Boxes.FindChildren(node, this->Ray.BoxesEnd, enter);
-      const std::uint8_t* const ranges =
-        this->Values.GetRanges(static_cast<std::uint32_t>(&node - this->Nodes));
-      unsigned found = 0;
-      for (unsigned left = met; left != 0; left &= left - 1)
-      {
-        const int child = __builtin_ctz(left);
-        const bricks::ValueRange range{ this->First +
-            this->Step * static_cast<float>(ranges[child]),
-          this->First + this->Step * static_cast<float>(ranges[bricks::WideBvhWidth + child]) };
-        const bool isAny = range.First <= range.Last;
-        found |= static_cast<unsigned>(isAny && this->MayHold(range)) << child;
-      }
-      return found;
-    }
-    bool IsOpen(float) const { return true; }
-
-  private:
-    const ShearedRay& Ray;
-    const bricks::CellBrick::Node* Nodes;
-    const bricks::CellValueBrick& Values;
-    float First;
-    float Step;
-    const Predicate& MayHold;
-  };
-
   template <class Predicate>
   void Gather(const bricks::CellValues& values, std::uint32_t number, const ShearedRay& ray,
     const Predicate& mayHold) const
@@ -152,71 +97,20 @@ private:
       this->Blocks.AcquirePair(this->Self, *values.Cells->Segment, number, *values.Segment, number);
     const bricks::CellBrick brick(pins.first.GetData());
     const bricks::CellValueBrick numbers(pins.second.GetData());
-    const Wanted wanted(ray, brick, numbers, mayHold);
-    TraverseWideBvh(brick.GetNodes(), wanted,
-      [&](std::uint16_t leaf, float)
-      {
-        std::uint16_t corners[bricks::CellBrick::GroupSize][bricks::CellBrick::MostCorners];
-        const int cells = brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), corners);
-        for (int cell = 0; cell < cells; ++cell)
-        {
-          this->GatherCell(brick, numbers.GetValues(), corners[cell], number, ray, mayHold);
-        }
-      });
-  }
-
-  template <class Predicate>
-  void GatherCell(const bricks::CellBrick& brick, const float* values, const std::uint16_t* cell,
-    std::uint32_t number, const ShearedRay& ray, const Predicate& mayHold) const
-  {
-    const int corners = brick.GetHeader().Corners;
-    bricks::ValueRange all = bricks::ValueRange::GetEmpty();
-    for (int corner = 0; corner < corners; ++corner)
-    {
-      const float value = values[cell[corner]];
-      all.Add({ value, value });
-    }
-    if (!HasValues(values, cell, corners) || !mayHold(all))
-    {
-      return;
-    }
-    SplitCell(brick, cell,
-      [&](const std::uint16_t* points)
-      {
-        const float numbers[4] = { values[points[0]], values[points[1]], values[points[2]],
-          values[points[3]] };
-        const bricks::ValueRange range{ std::min(
-                                          { numbers[0], numbers[1], numbers[2], numbers[3] }),
-          std::max({ numbers[0], numbers[1], numbers[2], numbers[3] }) };
-        if (!mayHold(range))
-        {
-          return;
-        }
-        SeenPoint seen[4];
-        for (int corner = 0; corner < 4; ++corner)
-        {
-          seen[corner] = SeenPoint(ray.Triangles, brick.GetPoint(points[corner]), numbers[corner]);
-        }
-        TetrahedronCrossing crossing;
-        if (crossing.Find(ray.Triangles, seen))
-        {
-          this->Add(crossing, ray.Triangles, range, number, points);
-        }
-      });
+    const PredicateFilter filter(numbers.GetHeader(), mayHold);
+    BrickCrossings(brick, numbers, ray, filter)
+      .ForEach([&](const TetrahedronCrossing& crossing, const std::uint16_t* corners)
+        { this->Add(crossing, ray.Triangles, number, corners); });
   }
 
   /// Keeps the part of a crossing that is within the ray.
-  void Add(const TetrahedronCrossing& crossing, const TriangleRay& ray,
-    const bricks::ValueRange& range, std::uint32_t brick, const std::uint16_t* points) const
+  void Add(const TetrahedronCrossing& crossing, const TriangleRay& ray, std::uint32_t brick,
+    const std::uint16_t* corners) const
   {
-    if (crossing.Exit < ray.Min || crossing.Enter > ray.Max)
-    {
-      return;
-    }
     const double slope = crossing.Exit > crossing.Enter
       ? (crossing.Last - crossing.First) / (crossing.Exit - crossing.Enter)
       : 0.0;
-    Segment segment;
+    Segment& segment = this->Waiting.emplace_back();
     segment.Enter = std::max(crossing.Enter, ray.Min);
     segment.Exit = std::min(crossing.Exit, ray.Max);
     const double first = segment.Enter == crossing.Enter
@@ -226,11 +120,18 @@ private:
       ? crossing.Last
       : crossing.First + slope * (segment.Exit - crossing.Enter);
     segment.Values = { { first, segment.Last - first, 0.0, 0.0 } };
-    segment.Range = range;
-    segment.At.Point = glm::dvec3(0.0);
+    segment.Range = RoundOut(std::min(first, segment.Last), std::max(first, segment.Last));
     segment.At.Brick = brick;
-    std::copy_n(points, 4, segment.At.Corners);
-    this->Waiting.push_back(segment);
+    std::copy_n(corners, 4, segment.At.Corners);
+  }
+
+  static bricks::ValueRange RoundOut(double least, double most)
+  {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto first = static_cast<float>(least);
+    const auto last = static_cast<float>(most);
+    return { first > least ? std::nextafter(first, -infinity) : first,
+      last < most ? std::nextafter(last, infinity) : last };
   }
 
   /// Visits the segments that begin before `end`, in order.

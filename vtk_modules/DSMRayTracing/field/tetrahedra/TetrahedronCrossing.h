@@ -4,11 +4,14 @@
 
 #include "DSMRayTracing/ray/TriangleRay.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace rt
 {
 
-/// A point of a tetrahedron as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of
-/// its T times Shear[2].
+/// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T times
+/// Shear[2].
 struct SeenPoint
 {
   double X;
@@ -16,46 +19,59 @@ struct SeenPoint
   double Depth;
   double Value;
 
-  SeenPoint() = default;
-  SeenPoint(const TriangleRay& ray, const float* point, float value)
-    : Depth(point[ray.Axes[2]] - ray.Origin[2])
-    , Value(value)
+  void Set(const TriangleRay& ray, const float* point, float value)
   {
+    this->Depth = point[ray.Axes[2]] - ray.Origin[2];
     this->X = (point[ray.Axes[0]] - ray.Origin[0]) - ray.Shear[0] * this->Depth;
     this->Y = (point[ray.Axes[1]] - ray.Origin[1]) - ray.Shear[1] * this->Depth;
+    this->Value = value;
   }
 };
 
-/// Where a ray crosses the faces of a tetrahedron, and the values there.
-struct TetrahedronCrossing
+/// Where a ray crosses the faces of a tetrahedron, and the values there. What is found at a face has the same bits in
+/// both tetrahedra that share it, in whatever order they name its points: each number comes from operations that do not
+/// depend on the order, or of which only the sign does. As for triangles (TriangleIntersector.h), a ray does not pass
+/// between tetrahedra that share a face, an edge or a corner.
+class TetrahedronCrossing
 {
-  double Enter; ///< T
-  double Exit;  ///< T
-  double First;
-  double Last;
+public:
+  double Enter = std::numeric_limits<double>::infinity(); ///< T
+  double Exit = -std::numeric_limits<double>::infinity(); ///< T
+  double First = 0.0;                                     ///< the value at Enter
+  double Last = 0.0;                                      ///< at Exit
 
-  /// False where the ray misses the tetrahedron. `points` are in the order that all tetrahedra have them in: what is
-  /// found at a face comes from the same operations on both of its sides. As for triangles (TriangleIntersector.h), a
-  /// ray does not pass between tetrahedra that share a face, an edge or a corner.
-  bool Find(const TriangleRay& ray, const SeenPoint points[4])
+  /// Once. False where the ray misses the tetrahedron.
+  bool Find(const TriangleRay& ray, const SeenPoint& a, const SeenPoint& b, const SeenPoint& c,
+    const SeenPoint& d)
   {
-    const auto cross = [&](int one, int other)
-    { return points[one].X * points[other].Y - points[one].Y * points[other].X; };
-    const double edge01 = cross(0, 1);
-    const double edge02 = cross(0, 2);
-    const double edge03 = cross(0, 3);
-    const double edge12 = cross(1, 2);
-    const double edge13 = cross(1, 3);
-    const double edge23 = cross(2, 3);
-    this->Count = 0;
-    this->AddFace(ray, points[0], points[1], points[2], edge12, -edge02, edge01);
-    this->AddFace(ray, points[0], points[1], points[3], edge13, -edge03, edge01);
-    this->AddFace(ray, points[0], points[2], points[3], edge23, -edge03, edge02);
-    this->AddFace(ray, points[1], points[2], points[3], edge23, -edge13, edge12);
-    return this->Count > 1;
+    const double ab = Cross(a, b);
+    const double ac = Cross(a, c);
+    const double ad = Cross(a, d);
+    const double bc = Cross(b, c);
+    const double bd = Cross(b, d);
+    const double cd = Cross(c, d);
+    this->AddFace(ray, a, b, c, bc, -ac, ab);
+    this->AddFace(ray, a, b, d, bd, -ad, ab);
+    this->AddFace(ray, a, c, d, cd, -ad, ac);
+    this->AddFace(ray, b, c, d, cd, -bd, bc);
+    return this->Faces > 1;
   }
 
 private:
+  static double Cross(const SeenPoint& one, const SeenPoint& other)
+  {
+    return one.X * other.Y - one.Y * other.X;
+  }
+
+  /// Does not depend on the order of the numbers. If all are negated, so is the sum.
+  static double Add(double a, double b, double c)
+  {
+    const double less = std::min(a, b);
+    const double more = std::max(a, b);
+    const double middle = std::max(less, std::min(more, c));
+    return (std::min(less, c) + std::max(more, c)) + middle;
+  }
+
   void AddFace(const TriangleRay& ray, const SeenPoint& a, const SeenPoint& b, const SeenPoint& c,
     double u, double v, double w)
   {
@@ -63,28 +79,28 @@ private:
     {
       return;
     }
-    const double determinant = u + v + w;
+    const double determinant = Add(u, v, w);
     if (determinant == 0.0)
     {
       return;
     }
     const double inverse = 1.0 / determinant;
-    const double t = (u * a.Depth + v * b.Depth + w * c.Depth) * inverse * ray.Shear[2];
-    const double value = (u * a.Value + v * b.Value + w * c.Value) * inverse;
-    if (this->Count == 0 || t < this->Enter)
+    const double t = Add(u * a.Depth, v * b.Depth, w * c.Depth) * inverse * ray.Shear[2];
+    const double value = Add(u * a.Value, v * b.Value, w * c.Value) * inverse;
+    if (t < this->Enter)
     {
       this->Enter = t;
       this->First = value;
     }
-    if (this->Count == 0 || t > this->Exit)
+    if (t > this->Exit)
     {
       this->Exit = t;
       this->Last = value;
     }
-    ++this->Count;
+    ++this->Faces;
   }
 
-  int Count = 0;
+  int Faces = 0;
 };
 
 } // namespace rt
