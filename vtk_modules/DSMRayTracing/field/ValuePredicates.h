@@ -59,6 +59,13 @@ public:
   {
     return this->Function.IsSeen(range.First, range.Last);
   }
+  /// Returns whether it is visible everywhere in the range, as far as that is easily told.
+  bool HoldsAll(const bricks::ValueRange& range) const
+  {
+    return range.First <= range.Last &&
+      this->Function.AreAllBinsSeen(this->Function.GetBin(this->Function.GetPlace(range.First)),
+        this->Function.GetBin(this->Function.GetPlace(range.Last)));
+  }
 
 private:
   const TransferFunction& Function;

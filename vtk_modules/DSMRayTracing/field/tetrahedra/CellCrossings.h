@@ -190,6 +190,23 @@ private:
   const Predicate& Predicates;
 };
 
+/// Looks for any value.
+class AnyFilter
+{
+public:
+  static unsigned FindChildren(const std::uint8_t* ranges)
+  {
+    unsigned found = 0;
+    for (int child = 0; child < bricks::WideBvhWidth; ++child)
+    {
+      found |= static_cast<unsigned>(ranges[child] <= ranges[bricks::WideBvhWidth + child])
+        << child;
+    }
+    return found;
+  }
+  static bool MayHold(float, float) { return true; }
+};
+
 } // namespace rt
 
 #endif

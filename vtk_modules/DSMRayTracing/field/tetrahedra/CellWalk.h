@@ -19,6 +19,8 @@
 #include <cstdint>
 #include <limits>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace rt
@@ -68,6 +70,16 @@ public:
 private:
   using Segment = FieldSegment<CellPlace>;
 
+  /// What is gathered of a tetrahedron.
+  struct Part
+  {
+    double Enter;
+    double Exit;
+    double First;
+    double Last;
+    std::uint32_t Brick;
+    std::uint16_t Corners[4];
+  };
   struct Entry
   {
     float Enter;
@@ -97,11 +109,43 @@ private:
       this->Blocks.AcquirePair(this->Self, *values.Cells->Segment, number, *values.Segment, number);
     const bricks::CellBrick brick(pins.first.GetData());
     const bricks::CellValueBrick numbers(pins.second.GetData());
-    const PredicateFilter filter(numbers.GetHeader(), mayHold);
-    BrickCrossings(brick, numbers, ray, filter)
-      .ForEach([&](const TetrahedronCrossing& crossing, const std::uint16_t* corners)
-        { this->Add(crossing, ray.Triangles, number, corners); });
+    const auto gather = [&](const auto& filter)
+    {
+      BrickCrossings(brick, numbers, ray, filter)
+        .ForEach([&](const TetrahedronCrossing& crossing, const std::uint16_t* corners)
+          { this->Add(crossing, ray.Triangles, number, corners); });
+    };
+    const bricks::CellValueHeader& header = numbers.GetHeader();
+    if (HoldsAll(mayHold, { header.First, header.Last }))
+    {
+      gather(AnyFilter());
+    }
+    else
+    {
+      gather(PredicateFilter(header, mayHold));
+    }
   }
+
+  /// Returns whether a predicate that can tell holds everywhere in a range.
+  template <class Predicate>
+  static bool HoldsAll(const Predicate& mayHold, const bricks::ValueRange& range)
+  {
+    if constexpr (HasHoldsAll<Predicate>::value)
+    {
+      return mayHold.HoldsAll(range);
+    }
+    return false;
+  }
+  template <class Predicate, class = void>
+  struct HasHoldsAll : std::false_type
+  {
+  };
+  template <class Predicate>
+  struct HasHoldsAll<Predicate,
+    std::void_t<decltype(std::declval<const Predicate&>().HoldsAll(bricks::ValueRange()))>>
+    : std::true_type
+  {
+  };
 
   /// Keeps the part of a crossing that is within the ray.
   void Add(const TetrahedronCrossing& crossing, const TriangleRay& ray, std::uint32_t brick,
@@ -110,19 +154,16 @@ private:
     const double slope = crossing.Exit > crossing.Enter
       ? (crossing.Last - crossing.First) / (crossing.Exit - crossing.Enter)
       : 0.0;
-    Segment& segment = this->Waiting.emplace_back();
-    segment.Enter = std::max(crossing.Enter, ray.Min);
-    segment.Exit = std::min(crossing.Exit, ray.Max);
-    const double first = segment.Enter == crossing.Enter
+    Part& part = this->Waiting.emplace_back();
+    part.Enter = std::max(crossing.Enter, ray.Min);
+    part.Exit = std::min(crossing.Exit, ray.Max);
+    part.First = part.Enter == crossing.Enter
       ? crossing.First
-      : crossing.First + slope * (segment.Enter - crossing.Enter);
-    segment.Last = segment.Exit == crossing.Exit
-      ? crossing.Last
-      : crossing.First + slope * (segment.Exit - crossing.Enter);
-    segment.Values = { { first, segment.Last - first, 0.0, 0.0 } };
-    segment.Range = RoundOut(std::min(first, segment.Last), std::max(first, segment.Last));
-    segment.At.Brick = brick;
-    std::copy_n(corners, 4, segment.At.Corners);
+      : crossing.First + slope * (part.Enter - crossing.Enter);
+    part.Last = part.Exit == crossing.Exit ? crossing.Last
+                                           : crossing.First + slope * (part.Exit - crossing.Enter);
+    part.Brick = brick;
+    std::copy_n(corners, 4, part.Corners);
   }
 
   static bricks::ValueRange RoundOut(double least, double most)
@@ -138,25 +179,44 @@ private:
   template <class Predicate, class Visit>
   bool VisitUpTo(double end, const Predicate& mayHold, const Visit& visit) const
   {
-    const auto isBefore = [](const Segment& one, const Segment& other)
+    const auto isBefore = [](const Part& one, const Part& other)
     {
-      return std::tie(one.Enter, one.Exit, one.Values.Coefficients[0], one.Last) <
-        std::tie(other.Enter, other.Exit, other.Values.Coefficients[0], other.Last);
+      return one.Enter != other.Enter
+        ? one.Enter < other.Enter
+        : std::tie(one.Exit, one.First, one.Last) < std::tie(other.Exit, other.First, other.Last);
     };
     const auto reached = std::partition(this->Waiting.begin(), this->Waiting.end(),
-      [end](const Segment& segment) { return segment.Enter >= end; });
+      [end](const Part& part) { return part.Enter >= end; });
     std::sort(reached, this->Waiting.end(), isBefore);
     const bool isFound = std::any_of(reached, this->Waiting.end(),
-      [&](const Segment& segment) { return mayHold(segment.Range) && visit(segment); });
+      [&](const Part& part)
+      {
+        const bricks::ValueRange range =
+          RoundOut(std::min(part.First, part.Last), std::max(part.First, part.Last));
+        return mayHold(range) && visit(GetSegment(part, range));
+      });
     this->Waiting.erase(reached, this->Waiting.end());
     return isFound;
+  }
+
+  static Segment GetSegment(const Part& part, const bricks::ValueRange& range)
+  {
+    Segment segment;
+    segment.Enter = part.Enter;
+    segment.Exit = part.Exit;
+    segment.Values = { { part.First, part.Last - part.First, 0.0, 0.0 } };
+    segment.Last = part.Last;
+    segment.Range = range;
+    segment.At.Brick = part.Brick;
+    std::copy_n(part.Corners, 4, segment.At.Corners);
+    return segment;
   }
 
   Store& Blocks;
   typename Store::Worker& Self;
   // Storage that is kept from ray to ray.
   mutable std::vector<Entry> Entered;
-  mutable std::vector<Segment> Waiting;
+  mutable std::vector<Part> Waiting;
 };
 
 } // namespace rt
