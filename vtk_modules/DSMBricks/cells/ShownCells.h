@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef bricks_ShownCells_h
+#define bricks_ShownCells_h
+
+#include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/cells/CellSource.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bricks
+{
+
+/// Calls visit(cell, points, corners) for every shown cell of this rank, in any order, by several threads at a time.
+/// `points`: the cell's corners, so many: 4 or 8. Rethrows what a call throws.
+template <class Visit>
+void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
+{
+  constexpr std::size_t cellsOfChunk = 8192;
+  const auto visitRange = [&](std::uint64_t first, std::uint64_t last, int corners)
+  {
+    ParallelForChunks(threads, last - first, cellsOfChunk,
+      [&](std::size_t begin, std::size_t end, std::size_t, int)
+      {
+        std::uint64_t points[CellSource::MostCorners];
+        for (std::uint64_t cell = first + begin; cell < first + end; ++cell)
+        {
+          if (source.IsShown(cell))
+          {
+            source.GetCorners(cell, points);
+            visit(cell, points, corners);
+          }
+        }
+      });
+  };
+  const int corners = source.HasOnlyTetrahedra() ? 4 : CellSource::MostCorners;
+  std::uint64_t next = 0;
+  for (const CellSource::Grid& grid : source.GetGrids())
+  {
+    const Index3 cells = grid.Points - Index3(1);
+    const std::uint64_t end =
+      grid.FirstCell + static_cast<std::uint64_t>(cells.x * cells.y * cells.z);
+    visitRange(next, grid.FirstCell, corners);
+    visitRange(grid.FirstCell, end, CellSource::MostCorners);
+    next = end;
+  }
+  visitRange(next, source.GetCellCount(), corners);
+}
+
+} // namespace bricks
+
+#endif
