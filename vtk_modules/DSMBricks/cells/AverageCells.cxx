@@ -2,11 +2,10 @@
 #include "DSMBricks/cells/AverageCells.h"
 
 #include "DSMBricks/cells/ExactScale.h"
-#include "DSMBricks/cells/PointLocks.h"
+#include "DSMBricks/cells/PointNotes.h"
 #include "DSMBricks/cells/ShownCells.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -34,7 +33,7 @@ public:
     , Places(places)
     , GetValue(getValue)
     , Threads(threads)
-    , Powers(source.GetPointCount())
+    , Notes(source.GetPointCount())
   {
   }
 
@@ -42,33 +41,31 @@ public:
   void FindScales()
   {
     this->ForEachCell(
-      [this](double value, const std::uint64_t* points, int corners)
+      [this](double value, const std::uint64_t* points, int corners, std::size_t chunk)
       {
-        const std::uint16_t power = ExactScale(std::abs(value)).GetPower();
+        const std::uint32_t power = ExactScale(std::abs(value)).GetPower();
         for (int corner = 0; corner < corners; ++corner)
         {
-          RaiseAtomic(this->Powers[points[corner]],
-            [&](std::uint16_t known) { return std::max(known, power); });
+          this->Notes.Add(this->Places.GetFirst(points[corner]), chunk,
+            [&](std::uint32_t known) { return std::max(known, power); });
         }
       });
   }
 
   void JoinScales(std::string_view what)
   {
-    this->Places.Combine<std::uint16_t>(
-      what, [this](std::uint64_t point) { return this->GetScale(point).GetPower(); },
-      [this](std::uint64_t point, std::uint16_t power)
-      { this->Powers[point].store(power, std::memory_order_relaxed); },
-      [](std::uint16_t& power, std::uint16_t other) { power = std::max(power, other); });
+    this->Places.Combine<std::uint32_t>(
+      what, [this](std::uint64_t point) { return this->Notes.Get(point); },
+      [this](std::uint64_t point, std::uint32_t power) { this->Notes.Set(point, power); },
+      [](std::uint32_t& power, std::uint32_t other) { power = std::max(power, other); });
   }
 
   /// Adds up the values of this rank's cells.
   void AddCells()
   {
-    this->Sums.resize(this->Powers.size());
-    PointLocks locks(this->Powers.size());
+    this->Sums.resize(this->Notes.GetCount());
     this->ForEachCell(
-      [&](double value, const std::uint64_t* points, int corners)
+      [this](double value, const std::uint64_t* points, int corners, std::size_t chunk)
       {
         std::uint64_t added[CellSource::MostCorners];
         int count = 0;
@@ -78,11 +75,10 @@ public:
           if (std::find(added, added + count, point) == added + count)
           {
             added[count++] = point;
-            const std::int64_t number = this->GetScale(point).Fix(value);
-            locks.Run(point,
-              [&]
+            this->Notes.Run(point, chunk,
+              [&](std::uint32_t power)
               {
-                this->Sums[point].Sum += number;
+                this->Sums[point].Sum += ToScale(power).Fix(value);
                 ++this->Sums[point].Count;
               });
           }
@@ -101,29 +97,29 @@ public:
       if (sum.Count > 0)
       {
         const double mean = static_cast<double>(sum.Sum) / static_cast<double>(sum.Count);
-        means[point] = static_cast<float>(mean * this->GetScale(point).GetUnit());
+        means[point] = static_cast<float>(mean * ToScale(this->Notes.Get(point)).GetUnit());
       }
     }
     return means;
   }
 
 private:
-  ExactScale GetScale(std::uint64_t point) const
+  static ExactScale ToScale(std::uint32_t power)
   {
-    return ExactScale::FromPower(this->Powers[point].load(std::memory_order_relaxed));
+    return ExactScale::FromPower(static_cast<std::uint16_t>(power));
   }
 
-  /// Calls visit(value, points, corners) for every shown cell that has a value.
+  /// Calls visit(value, points, corners, chunk) for every shown cell that has a value.
   template <class Visit>
   void ForEachCell(const Visit& visit) const
   {
     ForEachShownCell(this->Source, this->Threads,
-      [&](std::uint64_t cell, const std::uint64_t* points, int corners)
+      [&](std::uint64_t cell, const std::uint64_t* points, int corners, std::size_t chunk)
       {
         const double value = this->GetValue(cell);
         if (std::isfinite(value))
         {
-          visit(value, points, corners);
+          visit(value, points, corners, chunk);
         }
       });
   }
@@ -132,8 +128,8 @@ private:
   const SharedPlaces& Places;
   dsm::FunctionRef<double(std::uint64_t)> GetValue;
   int Threads;
-  std::vector<std::atomic<std::uint16_t>> Powers; ///< of points: ExactScale
-  std::vector<CellValueSum> Sums;                 ///< of points
+  PointNotes Notes;               ///< powers of ExactScale
+  std::vector<CellValueSum> Sums; ///< of points
 };
 
 } // namespace

@@ -3,7 +3,6 @@
 #define bricks_CornerOrder_h
 
 #include <cstdint>
-#include <cstring>
 
 namespace bricks
 {
@@ -14,35 +13,30 @@ namespace bricks
 template <int Count>
 inline void OrderCorners(const float places[][3], std::uint8_t numbers[Count])
 {
-  // Integers in the order of the floats.
-  const auto toInteger = [](float value)
-  {
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof(bits));
-    return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
-  };
-  std::uint64_t xy[Count];
-  std::uint32_t z[Count];
+  // All by all, axis by axis, without branches: the compiler makes vectors of it, and a processor could not predict
+  // which corner is before which.
+  float x[Count];
+  float y[Count];
+  float z[Count];
+  std::int32_t before[Count] = {};
   for (int corner = 0; corner < Count; ++corner)
   {
-    const float* const place = places[corner];
-    xy[corner] = std::uint64_t(toInteger(place[0])) << 32 | toInteger(place[1]);
-    z[corner] = toInteger(place[2]);
-    numbers[corner] = 0;
+    x[corner] = places[corner][0];
+    y[corner] = places[corner][1];
+    z[corner] = places[corner][2];
   }
   for (int one = 0; one < Count; ++one)
   {
-    for (int other = one + 1; other < Count; ++other)
+    for (int other = 0; other < Count; ++other)
     {
-      // Without branches, which a processor cannot predict here.
-      const auto isEqual = static_cast<std::uint8_t>(xy[one] == xy[other]);
-      const auto isBefore =
-        static_cast<std::uint8_t>((xy[one] < xy[other]) | (isEqual & (z[one] < z[other])));
-      const auto isBehind =
-        static_cast<std::uint8_t>((xy[one] > xy[other]) | (isEqual & (z[one] > z[other])));
-      numbers[other] = static_cast<std::uint8_t>(numbers[other] + isBefore);
-      numbers[one] = static_cast<std::uint8_t>(numbers[one] + isBehind);
+      const bool isBeforeInFace =
+        (y[one] < y[other]) | ((y[one] == y[other]) & (z[one] < z[other]));
+      before[other] += (x[one] < x[other]) | ((x[one] == x[other]) & isBeforeInFace);
     }
+  }
+  for (int corner = 0; corner < Count; ++corner)
+  {
+    numbers[corner] = static_cast<std::uint8_t>(before[corner]);
   }
 }
 

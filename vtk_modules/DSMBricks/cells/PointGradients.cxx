@@ -4,12 +4,11 @@
 #include "DSMBricks/cells/CornerOrder.h"
 #include "DSMBricks/cells/ExactScale.h"
 #include "DSMBricks/cells/PlaceInBrick.h"
-#include "DSMBricks/cells/PointLocks.h"
+#include "DSMBricks/cells/PointNotes.h"
 #include "DSMBricks/cells/ShownCells.h"
 #include "DSMBricks/cells/SplitCell.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -128,7 +127,7 @@ public:
     , Space(space)
     , GetValue(getValue)
     , Threads(threads)
-    , Scales(source.GetPointCount())
+    , Notes(source.GetPointCount())
   {
   }
 
@@ -136,13 +135,13 @@ public:
   void FindScales()
   {
     this->ForEachCell(
-      [this](
-        const std::uint64_t* points, auto corners, const CellCorners&, const GradientBounds& bounds)
+      [this](const std::uint64_t* points, auto corners, const CellCorners&,
+        const GradientBounds& bounds, std::size_t chunk)
       {
         const GradientScales scales(bounds);
         for (int corner = 0; corner < corners(); ++corner)
         {
-          RaiseAtomic(this->Scales[points[corner]],
+          this->Notes.Add(points[corner], chunk,
             [&](std::uint32_t bits) { return scales.Join(GradientScales(bits)).GetBits(); });
         }
       });
@@ -151,9 +150,8 @@ public:
   void JoinScales(std::string_view what, const SharedPlaces& places)
   {
     places.Combine<std::uint32_t>(
-      what, [this](std::uint64_t point) { return this->GetScales(point).GetBits(); },
-      [this](std::uint64_t point, std::uint32_t bits)
-      { this->Scales[point].store(bits, std::memory_order_relaxed); },
+      what, [this](std::uint64_t point) { return this->Notes.Get(point); },
+      [this](std::uint64_t point, std::uint32_t bits) { this->Notes.Set(point, bits); },
       [](std::uint32_t& bits, std::uint32_t other)
       { bits = GradientScales(bits).Join(GradientScales(other)).GetBits(); });
   }
@@ -161,11 +159,10 @@ public:
   /// Adds up what this rank's cells give to its points.
   void AddCells()
   {
-    this->Sums.resize(this->Scales.size());
-    PointLocks locks(this->Scales.size());
-    this->ForEachCell(
-      [&](const std::uint64_t* points, auto corners, const CellCorners& cell,
-        const GradientBounds& bounds) { this->AddCell(points, corners, cell, bounds, locks); });
+    this->Sums.resize(this->Notes.GetCount());
+    this->ForEachCell([this](const std::uint64_t* points, auto corners, const CellCorners& cell,
+                        const GradientBounds& bounds, std::size_t chunk)
+      { this->AddCell(points, corners, cell, bounds, chunk); });
   }
 
   std::int64_t* GetSums() { return this->Sums.empty() ? nullptr : this->Sums.data()->Parts; }
@@ -189,28 +186,26 @@ private:
   template <int Count>
   using CornerCount = std::integral_constant<int, Count>;
 
-  GradientScales GetScales(std::uint64_t point) const
-  {
-    return GradientScales(this->Scales[point].load(std::memory_order_relaxed));
-  }
-
-  /// Calls visit(points, CornerCount, corners, bounds) for every cell that counts.
+  /// Calls visit(points, CornerCount, corners, bounds, chunk) for every cell that counts.
   template <class Visit>
   void ForEachCell(const Visit& visit) const
   {
     ForEachShownCell(this->Source, this->Threads,
-      [&](std::uint64_t, const std::uint64_t* points, int corners)
-      { corners == 4 ? this->VisitCell<4>(points, visit) : this->VisitCell<8>(points, visit); });
+      [&](std::uint64_t, const std::uint64_t* points, int corners, std::size_t chunk)
+      {
+        corners == 4 ? this->VisitCell<4>(points, chunk, visit)
+                     : this->VisitCell<8>(points, chunk, visit);
+      });
   }
 
   template <int Corners, class Visit>
-  void VisitCell(const std::uint64_t* points, const Visit& visit) const
+  void VisitCell(const std::uint64_t* points, std::size_t chunk, const Visit& visit) const
   {
     CellCorners cell;
     GradientBounds bounds;
     if (this->ReadCell<Corners>(points, cell, bounds))
     {
-      visit(points, CornerCount<Corners>(), cell, bounds);
+      visit(points, CornerCount<Corners>(), cell, bounds, chunk);
     }
   }
 
@@ -218,15 +213,17 @@ private:
   template <int Corners>
   bool ReadCell(const std::uint64_t* points, CellCorners& cell, GradientBounds& bounds) const
   {
+    double positions[Corners][3];
     for (int corner = 0; corner < Corners; ++corner)
     {
-      double position[3];
-      this->Source.GetPosition(points[corner], position);
-      if (!PlaceInBrick(this->Space, position, cell.Places[corner]))
-      {
-        return false;
-      }
+      this->Source.GetPosition(points[corner], positions[corner]);
       cell.Values[corner] = this->GetValue(points[corner]);
+    }
+    const BrickSpace space = this->Space; // no call in between may change it
+    bool isFinite = true;
+    for (int corner = 0; corner < Corners; ++corner)
+    {
+      isFinite = PlaceInBrick(space, positions[corner], cell.Places[corner]) && isFinite;
     }
     double size[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -253,12 +250,12 @@ private:
     // too, with values in place of an axis.
     const double face = std::max({ size[0] * size[1], size[1] * size[2], size[2] * size[0] });
     bounds = { 2.0 * face * (highest - lowest), 2.0 * size[0] * size[1] * size[2] };
-    return std::isfinite(sum) && std::isfinite(bounds.Gradient);
+    return isFinite && std::isfinite(sum) && std::isfinite(bounds.Gradient);
   }
 
   template <int Corners>
   void AddCell(const std::uint64_t* points, CornerCount<Corners>, const CellCorners& cell,
-    const GradientBounds& bounds, PointLocks& locks)
+    const GradientBounds& bounds, std::size_t chunk)
   {
     std::uint8_t order[Corners];
     OrderCorners<Corners>(cell.Places, order);
@@ -296,21 +293,21 @@ private:
     }
     for (int corner = 0; corner < Corners; ++corner)
     {
-      this->AddToPoint(points[corner], sums[corner], scales, locks);
+      this->AddToPoint(points[corner], sums[corner], scales, chunk);
     }
   }
 
   /// Adds what a cell gives to a point, whose scales may be larger.
   void AddToPoint(std::uint64_t point, const std::int64_t parts[PartsOfGradient],
-    const GradientScales& scales, PointLocks& locks)
+    const GradientScales& scales, std::size_t chunk)
   {
-    const GradientScales ofPoint = this->GetScales(point);
-    const int shift = ofPoint.OfGradient().CountBitsAbove(scales.OfGradient());
-    const int volumeShift = ofPoint.OfVolume().CountBitsAbove(scales.OfVolume());
-    std::int64_t* const sum = this->Sums[point].Parts;
-    locks.Run(point,
-      [&]
+    this->Notes.Run(point, chunk,
+      [&](std::uint32_t number)
       {
+        const GradientScales ofPoint(number);
+        const int shift = ofPoint.OfGradient().CountBitsAbove(scales.OfGradient());
+        const int volumeShift = ofPoint.OfVolume().CountBitsAbove(scales.OfVolume());
+        std::int64_t* const sum = this->Sums[point].Parts;
         for (int axis = 0; axis < 3; ++axis)
         {
           sum[axis] += parts[axis] >> shift;
@@ -326,7 +323,7 @@ private:
     {
       return {};
     }
-    const GradientScales scales = this->GetScales(point);
+    const GradientScales scales(this->Notes.Get(point));
     const int power = scales.OfGradient().GetPower() - scales.OfVolume().GetPower();
     double gradient[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -341,8 +338,8 @@ private:
   const BrickSpace& Space;
   dsm::FunctionRef<double(std::uint64_t)> GetValue;
   int Threads;
-  std::vector<std::atomic<std::uint32_t>> Scales; ///< of points: GradientScales
-  std::vector<GradientSum> Sums;                  ///< of points
+  PointNotes Notes;              ///< GradientScales
+  std::vector<GradientSum> Sums; ///< of points
 };
 
 } // namespace

@@ -23,7 +23,7 @@ namespace bricks
 /// tetrahedra meet in a place.
 ///
 /// `places`: of this rank's points, in the space of the bricks. `getValue(point)`: called by any thread; cells with a
-/// corner without a finite value or place do not count. Takes 37 bytes a point while it runs. Throws the same
+/// corner without a finite value or place do not count. Takes 40 bytes a point while it runs. Throws the same
 /// dsm::Error on every rank.
 std::vector<PackedGradient> FindPointGradients(std::string_view what, const CellSource& source,
   const BrickSpace& space, const SharedPlaces& places,

@@ -5,6 +5,7 @@
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMBricks/cells/CellSource.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,16 +13,21 @@
 namespace bricks
 {
 
-/// Calls visit(cell, points, corners) for every shown cell of this rank, in any order, by several threads at a time.
-/// `points`: the cell's corners, so many: 4 or 8. Rethrows what a call throws.
+/// Calls visit(cell, points, corners, chunk) for every shown cell of this rank, in any order, by several threads at a
+/// time. `points`: the cell's corners, so many: 4 or 8. Cells of the same chunk are visited by one thread; they are the
+/// same each time. Rethrows what a call throws.
 template <class Visit>
 void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
 {
-  constexpr std::size_t cellsOfChunk = 8192;
+  // Large chunks have few corners in common.
+  constexpr std::uint64_t fewestCells = 8192;
+  const auto chunks = 8 * static_cast<std::uint64_t>(std::max(threads, 1));
+  const std::uint64_t cellsOfChunk = std::max(source.GetCellCount() / chunks + 1, fewestCells);
+  std::size_t chunksBefore = 0;
   const auto visitRange = [&](std::uint64_t first, std::uint64_t last, int corners)
   {
     ParallelForChunks(threads, last - first, cellsOfChunk,
-      [&](std::size_t begin, std::size_t end, std::size_t, int)
+      [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
       {
         std::uint64_t points[CellSource::MostCorners];
         for (std::uint64_t cell = first + begin; cell < first + end; ++cell)
@@ -29,10 +35,11 @@ void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
           if (source.IsShown(cell))
           {
             source.GetCorners(cell, points);
-            visit(cell, points, corners);
+            visit(cell, points, corners, chunksBefore + chunk);
           }
         }
       });
+    chunksBefore += (last - first + cellsOfChunk - 1) / cellsOfChunk;
   };
   const int corners = source.HasOnlyTetrahedra() ? 4 : CellSource::MostCorners;
   std::uint64_t next = 0;
