@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <set>
 
 namespace
 {
@@ -106,6 +105,20 @@ TEST(AverageCells, DoNotDependOnTheDistribution)
       ExpectMeans(FindMeans(cells, ranks, 5, copies), expected);
     }
   }
+}
+
+/// More than one chunk of cells.
+TEST(AverageCells, DoNotDependOnTheThreads)
+{
+  Cells cells = CreateHexahedra(32, true);
+  std::mt19937 random(4);
+  for (std::size_t cell = 0; cell < cells.Corners.size(); ++cell)
+  {
+    cells.CellValues.push_back(std::exp2(static_cast<double>(random() % 300)));
+  }
+  const auto expected = FindMeans(cells, 1, 1, 1, 1);
+  ExpectMeans(FindMeans(cells, 1, 2, 2, 4), expected);
+  ExpectMeans(FindMeans(cells, 2, 3, 2, 2), expected);
 }
 
 TEST(AverageCells, ACellCountsOnceForAPlaceOfSeveralCorners)

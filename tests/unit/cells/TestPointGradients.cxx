@@ -231,6 +231,27 @@ TEST(PointGradients, DoNotDependOnTheDistribution)
   }
 }
 
+/// More than one chunk of cells, in order and shuffled: some points are in one chunk, and some in several.
+TEST(PointGradients, DoNotDependOnTheThreads)
+{
+  Cells cells = CreateHexahedra(32, true);
+  cells.SetPointValues(
+    [](const Position& p) { return std::sin(p[0]) + std::cos(0.5 * p[1]) * std::exp2(p[2]); });
+  const auto expected = FindDistributed(cells, 1, 1, 1, 1);
+  std::vector<std::uint32_t> inOrder;
+  RunOnCluster(1,
+    [&](dsm::Messenger& messenger)
+    {
+      for (const bricks::PackedGradient& gradient : FindGradients(cells, messenger, 4))
+      {
+        inOrder.push_back(GetBits(gradient));
+      }
+    });
+  EXPECT_EQ(inOrder, expected);
+  EXPECT_EQ(FindDistributed(cells, 1, 2, 1, 4), expected);
+  EXPECT_EQ(FindDistributed(cells, 2, 2, 2, 2), expected);
+}
+
 TEST(PointGradients, CellsWithoutAValueDoNotCount)
 {
   for (const double missing : { NoValue, std::numeric_limits<double>::infinity() })

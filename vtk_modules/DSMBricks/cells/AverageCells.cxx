@@ -4,6 +4,7 @@
 #include "DSMBricks/cells/ExactScale.h"
 #include "DSMBricks/cells/PointNotes.h"
 #include "DSMBricks/cells/ShownCells.h"
+#include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +64,8 @@ public:
   /// Adds up the values of this rank's cells.
   void AddCells()
   {
-    this->Sums.resize(this->Notes.GetCount());
+    this->Memory = dsm::BlockArena(this->Notes.GetCount() * sizeof(CellValueSum));
+    this->Sums = reinterpret_cast<CellValueSum*>(this->Memory.GetData());
     this->ForEachCell(
       [this](double value, const std::uint64_t* points, int corners, std::size_t chunk)
       {
@@ -86,11 +88,11 @@ public:
       });
   }
 
-  std::int64_t* GetSums() { return this->Sums.empty() ? nullptr : &this->Sums.data()->Sum; }
+  std::int64_t* GetSums() { return &this->Sums->Sum; }
 
   std::vector<float> FindMeans() const
   {
-    std::vector<float> means(this->Sums.size(), std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> means(this->Notes.GetCount(), std::numeric_limits<float>::quiet_NaN());
     for (std::size_t point = 0; point < means.size(); ++point)
     {
       const CellValueSum& sum = this->Sums[point];
@@ -128,8 +130,9 @@ private:
   const SharedPlaces& Places;
   dsm::FunctionRef<double(std::uint64_t)> GetValue;
   int Threads;
-  PointNotes Notes;               ///< powers of ExactScale
-  std::vector<CellValueSum> Sums; ///< of points
+  PointNotes Notes; ///< powers of ExactScale
+  dsm::BlockArena Memory;
+  CellValueSum* Sums = nullptr; ///< of points, in Memory
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/Error.h"
+#include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -107,7 +108,8 @@ private:
       }
     }
     this->Begins[parts] = sum;
-    this->Entries.resize(sum);
+    this->Memory = dsm::BlockArena(sum * sizeof(Entry));
+    this->Entries = reinterpret_cast<Entry*>(this->Memory.GetData());
     this->ForEachHash(
       [&](std::size_t chunk, std::uint32_t point, std::uint64_t hash)
       {
@@ -119,7 +121,7 @@ private:
 
   std::vector<LaterPoint> Search(std::size_t part, std::vector<std::uint32_t>& table) const
   {
-    const Entry* const entries = this->Entries.data() + this->Begins[part];
+    const Entry* const entries = this->Entries + this->Begins[part];
     const std::uint32_t count = this->Begins[part + 1] - this->Begins[part];
     std::size_t size = 16;
     while (size < 2 * std::size_t(count))
@@ -182,7 +184,8 @@ private:
   std::uint64_t ChunkSize;
   int PartBits = 0;
   std::vector<std::uint32_t> Begins; ///< of parts, in Entries
-  std::vector<Entry> Entries;
+  dsm::BlockArena Memory;
+  Entry* Entries = nullptr; ///< in Memory
 };
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "DSMBricks/cells/PointNotes.h"
 #include "DSMBricks/cells/ShownCells.h"
 #include "DSMBricks/cells/SplitCell.h"
+#include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>
 #include <cmath>
@@ -159,18 +160,19 @@ public:
   /// Adds up what this rank's cells give to its points.
   void AddCells()
   {
-    this->Sums.resize(this->Notes.GetCount());
+    this->Memory = dsm::BlockArena(this->Notes.GetCount() * sizeof(GradientSum));
+    this->Sums = reinterpret_cast<GradientSum*>(this->Memory.GetData());
     this->ForEachCell([this](const std::uint64_t* points, auto corners, const CellCorners& cell,
                         const GradientBounds& bounds, std::size_t chunk)
       { this->AddCell(points, corners, cell, bounds, chunk); });
   }
 
-  std::int64_t* GetSums() { return this->Sums.empty() ? nullptr : this->Sums.data()->Parts; }
+  std::int64_t* GetSums() { return this->Sums->Parts; }
 
   std::vector<PackedGradient> Pack() const
   {
     constexpr std::size_t pointsOfChunk = std::size_t(1) << 16;
-    std::vector<PackedGradient> gradients(this->Sums.size());
+    std::vector<PackedGradient> gradients(this->Notes.GetCount());
     ParallelForChunks(this->Threads, gradients.size(), pointsOfChunk,
       [&](std::size_t begin, std::size_t end, std::size_t, int)
       {
@@ -338,8 +340,9 @@ private:
   const BrickSpace& Space;
   dsm::FunctionRef<double(std::uint64_t)> GetValue;
   int Threads;
-  PointNotes Notes;              ///< GradientScales
-  std::vector<GradientSum> Sums; ///< of points
+  PointNotes Notes; ///< GradientScales
+  dsm::BlockArena Memory;
+  GradientSum* Sums = nullptr; ///< of points, in Memory
 };
 
 } // namespace

@@ -2,11 +2,12 @@
 #ifndef bricks_PointNotes_h
 #define bricks_PointNotes_h
 
+#include "DSMCore/memory/BlockArena.h"
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <thread>
-#include <vector>
 
 namespace bricks
 {
@@ -18,19 +19,22 @@ namespace bricks
 class PointNotes
 {
 public:
+  /// Throws std::bad_alloc.
   explicit PointNotes(std::size_t points)
-    : Notes(points)
+    : Count(points)
+    , Memory(points * sizeof(Note))
+    , Notes(reinterpret_cast<Note*>(this->Memory.GetData()))
   {
   }
 
-  std::size_t GetCount() const { return this->Notes.size(); }
+  std::size_t GetCount() const { return this->Count; }
 
   /// Notes that a chunk has a point, and makes its number, 0 at first, what raise(number) returns. The order of calls
   /// must not matter. Any thread.
   template <class Raise>
   void Add(std::uint64_t point, std::size_t chunk, const Raise& raise)
   {
-    std::atomic<std::uint64_t>& note = this->Notes[point];
+    Note& note = this->Notes[point];
     std::uint64_t known = note.load(std::memory_order_relaxed);
     const std::uint64_t mine = ToOwner(chunk);
     while (true)
@@ -52,7 +56,7 @@ public:
   /// One thread alone.
   void Set(std::uint64_t point, std::uint32_t number)
   {
-    std::atomic<std::uint64_t>& note = this->Notes[point];
+    Note& note = this->Notes[point];
     note.store(
       (note.load(std::memory_order_relaxed) & OwnerBits) | number, std::memory_order_relaxed);
   }
@@ -62,7 +66,7 @@ public:
   template <class Step>
   void Run(std::uint64_t point, std::size_t chunk, const Step& step)
   {
-    std::atomic<std::uint64_t>& note = this->Notes[point];
+    Note& note = this->Notes[point];
     std::uint64_t known = note.load(std::memory_order_relaxed);
     if ((known & OwnerBits) == ToOwner(chunk))
     {
@@ -79,13 +83,16 @@ public:
   }
 
 private:
+  using Note = std::atomic<std::uint64_t>;
   static constexpr std::uint64_t LockBit = std::uint64_t(1) << 63;
   /// All of them: several chunks. None: no chunk.
   static constexpr std::uint64_t OwnerBits = LockBit - (std::uint64_t(1) << 32);
 
   static std::uint64_t ToOwner(std::size_t chunk) { return std::uint64_t(chunk + 1) << 32; }
 
-  std::vector<std::atomic<std::uint64_t>> Notes;
+  std::size_t Count;
+  dsm::BlockArena Memory; ///< in large pages, since points are met in any order
+  Note* Notes;            ///< all are 0 at first
 };
 
 } // namespace bricks

@@ -64,7 +64,7 @@ public:
   std::uint64_t GetFirst(std::uint64_t point) const;
 
 private:
-  /// What Combine knows of its records.
+  /// Records of points, as Combine handles them.
   struct Records
   {
     std::size_t Bytes;
