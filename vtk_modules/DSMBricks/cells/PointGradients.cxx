@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <type_traits>
 
 namespace bricks
 {
@@ -241,18 +242,17 @@ private:
     }
     double lowest = cell.Values[0];
     double highest = lowest;
-    double sum = lowest; // a value that is not finite makes it so
-    for (int corner = 1; corner < Corners; ++corner)
+    for (int corner = 0; corner < Corners; ++corner)
     {
       lowest = std::min(lowest, cell.Values[corner]);
       highest = std::max(highest, cell.Values[corner]);
-      sum += cell.Values[corner];
+      isFinite = isFinite && std::isfinite(cell.Values[corner]);
     }
     // Twice the volume of a box is the largest determinant of three edges in it. A component of the gradient is one,
     // too, with values in place of an axis.
     const double face = std::max({ size[0] * size[1], size[1] * size[2], size[2] * size[0] });
     bounds = { 2.0 * face * (highest - lowest), 2.0 * size[0] * size[1] * size[2] };
-    return isFinite && std::isfinite(sum) && std::isfinite(bounds.Gradient);
+    return isFinite && std::isfinite(bounds.Gradient);
   }
 
   template <int Corners>
@@ -326,12 +326,11 @@ private:
       return {};
     }
     const GradientScales scales(this->Notes.Get(point));
-    const int power = scales.OfGradient().GetPower() - scales.OfVolume().GetPower();
+    const double perVolume = scales.OfGradient().GetUnit() / scales.OfVolume().GetUnit();
     double gradient[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      gradient[axis] =
-        std::ldexp(static_cast<double>(parts[axis]) / static_cast<double>(parts[3]), power);
+      gradient[axis] = static_cast<double>(parts[axis]) / static_cast<double>(parts[3]) * perVolume;
     }
     return PackedGradient(gradient);
   }
