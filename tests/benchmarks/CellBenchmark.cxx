@@ -5,7 +5,10 @@
 #include "MediumFunction.h"
 #include "PictureFile.h"
 
+#include "DSMBricks/cells/PlaceInBrick.h"
+#include "DSMBricks/cells/PointGradients.h"
 #include "DSMBricks/cells/PublishCells.h"
+#include "DSMBricks/cells/SharedPlaces.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
 #include "tests/support/CellModel.h"
@@ -94,8 +97,24 @@ public:
     const double sorted = GetSecondsSince(begin);
     const auto getValue = [&](std::uint64_t point) { return Evaluate(model.GetPlaces()[point]); };
     begin = Clock::now();
-    const auto values = bricks::PublishCellValues(
-      "values", cells, routes, getValue, {}, sorting.Threads, this->Store, this->Messenger, place);
+    std::vector<bricks::PackedGradient> gradients;
+    if (this->Settings.Gradients)
+    {
+      const auto getPlace = [&](std::uint64_t point, float place[3])
+      {
+        double position[3];
+        model.GetPosition(point, position);
+        return bricks::PlaceInBrick(*cells, position, place);
+      };
+      const bricks::SharedPlaces places(
+        "places", model.GetPointCount(), getPlace, sorting.Threads, this->Messenger);
+      gradients = bricks::FindPointGradients(
+        "gradients", model, *cells, places, getValue, sorting.Threads, this->Messenger);
+    }
+    const double derived = GetSecondsSince(begin);
+    begin = Clock::now();
+    const auto values = bricks::PublishCellValues("values", cells, routes, getValue, gradients,
+      sorting.Threads, this->Store, this->Messenger, place);
     const double filled = GetSecondsSince(begin);
     this->Field.Voxels = values;
     const auto count = static_cast<double>(cells->Cells);
@@ -103,8 +122,8 @@ public:
     { return static_cast<double>(segment.GetDirectory().GetTotalBytes()) / count; };
     return { { "kind", kind }, { "cells", cells->Cells },
       { "bricks", cells->Segment->GetDirectory().GetCount() }, { "sorting_seconds", sorted },
-      { "values_seconds", filled }, { "cell_bytes", bytesOf(*cells->Segment) },
-      { "value_bytes", bytesOf(*values->Segment) },
+      { "gradients_seconds", derived }, { "values_seconds", filled },
+      { "cell_bytes", bytesOf(*cells->Segment) }, { "value_bytes", bytesOf(*values->Segment) },
       { "index_bytes",
         static_cast<double>(cells->GetBytes() + values->Hierarchy.GetBytes()) / count } };
   }
@@ -194,6 +213,8 @@ void CellBenchmark::Options::AddTo(CLI::App& app)
     ->allow_extra_args(false)
     ->check(CLI::IsMember({ "surface", "shell", "fog", "ramp" }));
   app.add_option("--isovalue", this->Isovalue, "from 0 to 0.8")->capture_default_str();
+  app.add_option("--gradients", this->Gradients,
+    "off: surfaces are shaded by the planes of tetrahedra (default on)");
   app.add_option("--picture", this->Picture, "writes the first picture to a file (.ppm)");
   this->RunOptions::AddTo(app);
 }
@@ -212,7 +233,8 @@ void CellBenchmark::Run(const Options& options, dsm::Messenger& messenger)
          << cells["bricks"].get<std::uint64_t>() << " bricks, " << cells["cell_bytes"].get<double>()
          << " + " << cells["value_bytes"].get<double>() << " + "
          << cells["index_bytes"].get<double>() << " bytes a cell, sorted in "
-         << cells["sorting_seconds"].get<double>() << " s, values in "
+         << cells["sorting_seconds"].get<double>() << " s, gradients in "
+         << cells["gradients_seconds"].get<double>() << " s, values in "
          << cells["values_seconds"].get<double>() << " s\n";
     for (const std::string& show : options.Shows)
     {

@@ -24,6 +24,7 @@ public:
     std::uint64_t Cells = 1000000;                  ///< about
     std::vector<std::string> Shows{ "surface" };    ///< fog, shell, ramp
     double Isovalue = 0.5;
+    bool Gradients = true;
     std::string Picture; ///< file.ppm of the first position
 
     /// Adds the options that change this object.

@@ -20,7 +20,7 @@ namespace bricks
 class CellSource
 {
 public:
-  /// Of a hexahedron.
+  /// The number of a hexahedron's corners.
   static constexpr int MostCorners = 8;
 
   virtual ~CellSource() = default;

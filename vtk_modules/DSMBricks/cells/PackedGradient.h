@@ -12,8 +12,8 @@
 namespace bricks
 {
 
-/// A gradient in 32 bits: its direction on the unit octahedron, 12 bits a side (OctahedralNormal), and its length to
-/// 5 % in 8 bits, from 2^-64 to 2^63. Zero: no gradient, or one that is shorter.
+/// A gradient in 32 bits: its direction on the unit octahedron, 11 bits a side (OctahedralNormal), and its length to
+/// 5 % in 10 bits, from 2^-64 to 2^63. Zero: no gradient, or one that is shorter.
 class PackedGradient
 {
 public:
@@ -25,7 +25,9 @@ public:
   void Unpack(double gradient[3]) const;
 
 private:
-  static constexpr double Middle = 2047.0;
+  static constexpr double Middle = 1023.0;
+  static constexpr double StepsPerOctave = 8.0;
+  static constexpr double One = 512.0; ///< steps of the length 1
 
   std::uint32_t Bits = 0;
 };
@@ -39,7 +41,7 @@ inline PackedGradient::PackedGradient(const double gradient[3])
   {
     return;
   }
-  const double steps = std::round(2.0 * std::log2(length)) + 128.0;
+  const double steps = std::round(StepsPerOctave * std::log2(length)) + One;
   if (steps < 1.0)
   {
     return;
@@ -59,21 +61,21 @@ inline PackedGradient::PackedGradient(const double gradient[3])
       std::clamp(std::round(x * Middle + Middle), 0.0, 2.0 * Middle));
   };
   this->Bits =
-    static_cast<std::uint32_t>(std::min(steps, 255.0)) << 24 | quantize(u) << 12 | quantize(v);
+    static_cast<std::uint32_t>(std::min(steps, 1023.0)) << 22 | quantize(u) << 11 | quantize(v);
 }
 
 inline void PackedGradient::Unpack(double gradient[3]) const
 {
-  const std::uint32_t steps = this->Bits >> 24;
-  const double u = ((this->Bits >> 12 & 0xfffu) - Middle) / Middle;
-  const double v = ((this->Bits & 0xfffu) - Middle) / Middle;
+  const std::uint32_t steps = this->Bits >> 22;
+  const double u = ((this->Bits >> 11 & 0x7ffu) - Middle) / Middle;
+  const double v = ((this->Bits & 0x7ffu) - Middle) / Middle;
   double way[3] = { u, v, 1.0 - std::abs(u) - std::abs(v) };
   const double fold = std::max(-way[2], 0.0);
   way[0] += u < 0.0 ? fold : -fold;
   way[1] += v < 0.0 ? fold : -fold;
   const double size = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
   const double length =
-    steps == 0 ? 0.0 : std::exp2(0.5 * (static_cast<double>(steps) - 128.0)) / size;
+    steps == 0 ? 0.0 : std::exp2((static_cast<double>(steps) - One) / StepsPerOctave) / size;
   for (int axis = 0; axis < 3; ++axis)
   {
     gradient[axis] = way[axis] * length;
