@@ -65,7 +65,7 @@ void ExpectNear(const bricks::PackedGradient& packed, const Position& expected)
     ofExpected += expected[axis] * expected[axis];
   }
   EXPECT_NEAR(std::log2(ofFound / ofExpected), 0.0, 0.51);
-  EXPECT_GT(both / std::sqrt(ofFound * ofExpected), 1.0 - 1e-6);
+  EXPECT_GT(both / std::sqrt(ofFound * ofExpected), 1.0 - 4e-6);
 }
 
 void ExpectLinear(const Cells& cells, const Position& slope = Slope)
