@@ -150,6 +150,7 @@ void vtkDSMSceneVolume::GiveUpBlocks()
 {
   this->Arrays.clear();
   this->Stale.clear();
+  this->Data.reset(); // parts of it may have blocks, too
   this->Taken = false;
 }
 

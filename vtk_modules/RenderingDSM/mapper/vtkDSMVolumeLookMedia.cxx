@@ -157,7 +157,7 @@ std::optional<vtkDSMVolumeLook::Obstacle> vtkDSMVolumeLook::FindNearestObstacle(
   }
   if (!isOfSamples)
   {
-    return Obstacle{ "for AMR and hyper tree grids",
+    return Obstacle{ "for AMR, and for hyper tree, curvilinear and unstructured grids",
       "Draw slices with InterpolateSlicesOff(). In ParaView, use DSM Slices without Interpolate "
       "Values, or apply Resample To Image." };
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMVolumeMapper.h"
 
+#include "vtkDSMVolumeData.h"
+
 #include "vtkDSMKnownBounds.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
@@ -432,6 +434,11 @@ void vtkDSMVolumeMapper::CopyVolumeMapper(vtkVolumeMapper* other)
   {
     this->SelectScalarArray(other->GetArrayName());
   }
+}
+
+bool vtkDSMVolumeMapper::IsVolume(vtkDataObject* data)
+{
+  return vtkDSMVolumeData::IsVolume(data);
 }
 
 int vtkDSMVolumeMapper::FillInputPortInformation(int, vtkInformation* info)

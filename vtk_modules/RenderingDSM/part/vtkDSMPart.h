@@ -21,8 +21,8 @@
 class vtkAbstractArray;
 class vtkBoundingBox;
 
-/// A piece of a dataset that is shown as one field: a lattice, or levels that lie within one another. Its data may
-/// be on any ranks; every rank has the same parts in the same order. Keeps this rank's data alive, without a copy.
+/// A piece of a dataset that is shown as one field: a lattice, levels that lie within one another, or cells of any
+/// shape. Its data may be on any ranks; every rank has the same parts in the same order. Keeps this rank's data alive, without a copy.
 /// Methods documented as collective need every rank. Failures are dsm::Error, the same on every rank.
 class vtkDSMPart
 {

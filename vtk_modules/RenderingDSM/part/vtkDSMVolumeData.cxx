@@ -2,7 +2,9 @@
 #include "vtkDSMVolumeData.h"
 
 #include "DSMBricks/base/ByteHash.h"
+#include "vtkDSMCellPart.h"
 #include "vtkDSMGather.h"
+#include "vtkDSMGridCells.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMJoinedImages.h"
 #include "vtkDSMLevelPart.h"
@@ -15,6 +17,7 @@
 #include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkPointSet.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkUniformGridAMR.h"
 
@@ -58,16 +61,18 @@ void ForEachLeaf(vtkCompositeDataSet* data, const Visit& visit)
   }
 }
 
-/// Returns 0 for data that are no grid of values.
+/// Returns 0 for data that are no grid of values, and for grids of points without cells that have a volume.
 int GetDimension(vtkDataObject* object)
 {
   auto* const image = vtkImageData::SafeDownCast(object);
   auto* const grid = vtkRectilinearGrid::SafeDownCast(object);
   auto* const trees = vtkHyperTreeGrid::SafeDownCast(object);
-  return image ? image->GetDataDimension()
-    : grid     ? grid->GetDataDimension()
-    : trees    ? static_cast<int>(trees->GetDimension())
-               : 0;
+  vtkPointSet* const cells = vtkDSMGridCells::FindGrid(object);
+  return image                                   ? image->GetDataDimension()
+    : grid                                       ? grid->GetDataDimension()
+    : trees                                      ? static_cast<int>(trees->GetDimension())
+    : cells && vtkDSMGridCells::HasVolume(cells) ? 3
+                                                 : 0;
 }
 
 vtkDSMBlockLook FindLook(const vtkDSMBlockLooks& looks, int leaf)
@@ -81,6 +86,7 @@ struct Collected
 {
   std::vector<vtkDSMJoinedImages::Image> Images;
   vtkDSMLevelPart::OwnPieces Levels;
+  vtkDSMCellPart::OwnPieces Cells;
 };
 
 /// Collective. Sorts this rank's data. `hasVolumes`: there are volumes here, which may be hidden.
@@ -89,8 +95,10 @@ Collected Collect(
 {
   Collected all;
   bool isAnyOther = false;
+  bool isAnyFlat = false; // grids of points without cells that have a volume
   const auto add = [&](vtkDataObject* object, int leaf, int dataset)
   {
+    vtkPointSet* const cells = vtkDSMGridCells::FindGrid(object);
     auto* const trees = vtkHyperTreeGrid::SafeDownCast(object);
     vtkDataSet* const image = vtkDSMImagePiece::FindImage(object);
     const bool isBlock = object != data;
@@ -107,7 +115,15 @@ Collected Collect(
     {
       all.Images.push_back({ image, leaf, FindLook(looks, leaf) });
     }
-    isAnyOther = isAnyOther || (!trees && !image);
+    else if (cells && vtkDSMGridCells::HasVolume(cells))
+    {
+      all.Cells.push_back({ cells, FindLook(looks, leaf) });
+    }
+    else if (cells)
+    {
+      isAnyFlat = isAnyFlat || cells->GetNumberOfCells() > 0;
+    }
+    isAnyOther = isAnyOther || (!trees && !image && !cells);
   };
   messenger.RunTogether("Reading the volume",
     [&]
@@ -143,9 +159,8 @@ Collected Collect(
       if (isAnyOther && !tree)
       {
         throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
-          " cannot be ray traced. Image data, a rectilinear grid, AMR, a hyper tree grid, or "
-          "blocks of these are "
-          "required. Apply Resample To Image first.");
+          " cannot be ray traced. Image data, a rectilinear, structured or unstructured grid, AMR, "
+          "a hyper tree grid, or blocks of these are required. Apply Resample To Image first.");
       }
     });
   const auto isOf = [&](bool is)
@@ -153,12 +168,19 @@ Collected Collect(
     const auto flags = messenger.AllGatherValue(std::uint8_t(is ? 1 : 0));
     return *std::max_element(flags.begin(), flags.end()) != 0;
   };
-  const bool isAny = isOf(hasVolumes || !all.Images.empty() || !all.Levels.empty());
-  if (isOf(isAnyOther) && !isAny)
+  const bool isAny =
+    isOf(hasVolumes || !all.Images.empty() || !all.Levels.empty() || !all.Cells.empty());
+  const bool areFlat = isOf(isAnyFlat);
+  if (isOf(isAnyOther) && !isAny && !areFlat)
   {
     throw dsm::Error(
-      "The blocks of the dataset are neither image data nor rectilinear grids nor hyper tree "
-      "grids, one of which ray tracing requires. Apply Resample To Image first.");
+      "The blocks of the dataset are neither image data nor rectilinear, structured, unstructured "
+      "or hyper tree grids, one of which ray tracing requires. Apply Resample To Image first.");
+  }
+  if (areFlat && !isAny)
+  {
+    throw dsm::Error("The cells of the dataset have no volume, so there is nothing to ray trace in "
+                     "them. Apply Extract Surface, and show the surface.");
   }
   return all;
 }
@@ -168,7 +190,7 @@ void AddVolumes(vtkDataObject* data, std::vector<vtkSmartPointer<vtkDataObject>>
 {
   const auto add = [&volumes](vtkDataObject* object, int, int)
   {
-    if (GetDimension(object) == 3)
+    if (vtkDSMVolumeData::IsVolume(object))
     {
       volumes.emplace_back(object);
     }
@@ -206,16 +228,27 @@ vtkDSMVolumeData::vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDa
       {
         all.push_back(piece.Data);
       }
+      for (const vtkDSMCellPart::Piece& piece : own.Cells)
+      {
+        all.emplace_back(piece.Data);
+      }
     });
   this->Arrays = vtkDSMImageArrays(messenger, all, withHidden);
   vtkDSMJoinedImages images(this->Group, own.Images);
   auto levels = vtkDSMLevelPart::Create(this->Group, own.Levels);
+  auto cells = vtkDSMCellPart::Create(this->Group, own.Cells);
   this->Seams = images.SeparateBlocks(this->Arrays, choose(this->Arrays));
   this->Parts = images.CreateParts();
   std::move(levels.begin(), levels.end(), std::back_inserter(this->Parts));
+  std::move(cells.begin(), cells.end(), std::back_inserter(this->Parts));
 }
 
 vtkDSMVolumeData::~vtkDSMVolumeData() = default;
+
+bool vtkDSMVolumeData::IsVolume(vtkDataObject* data)
+{
+  return GetDimension(data) == 3;
+}
 
 void vtkDSMVolumeData::GetBounds(double bounds[6]) const
 {

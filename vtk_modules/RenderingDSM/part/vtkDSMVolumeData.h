@@ -14,8 +14,8 @@
 
 class vtkDataObject;
 
-/// A dataset of images and of hyper tree grids, or AMR, that is distributed over the ranks, sorted into the parts
-/// that are shown. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank
+/// A dataset of images, of hyper tree grids and of curvilinear and unstructured grids, or AMR, that is distributed over
+/// the ranks, sorted into the parts that are shown. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank
 /// without data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
@@ -36,8 +36,12 @@ public:
   /// Which arrays are to be shown, of those that there are.
   using Chooser = std::function<std::vector<Choice>(const vtkDSMImageArrays&)>;
 
-  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkHyperTreeGrid, AMR, a composite
-  /// dataset of any but AMR, whose other blocks are left out, or null; `looks` are of its blocks. Blocks that
+  /// Local. Returns whether a dataset that is not composite is a grid of values with a volume, of any kind that can be
+  /// shown.
+  static bool IsVolume(vtkDataObject* data);
+
+  /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid,
+  /// vtkHyperTreeGrid, AMR, a composite dataset of any but AMR, whose other blocks are left out, or null; `looks` are of its blocks. Blocks that
   /// continue one another are taken for one volume, where the arrays that `choose` names agree at the points that
   /// the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
