@@ -27,5 +27,6 @@ bool pqDSMVolumesDecorator::canShowWidget(bool) const
     source ? source->GetDataInformation(input.GetOutputPort()) : nullptr;
   return data &&
     (data->HasDataSetType("vtkImageData") || data->HasDataSetType("vtkRectilinearGrid") ||
+      data->HasDataSetType("vtkStructuredGrid") || data->HasDataSetType("vtkUnstructuredGrid") ||
       data->HasDataSetType("vtkHyperTreeGrid"));
 }

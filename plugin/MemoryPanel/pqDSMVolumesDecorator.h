@@ -4,8 +4,8 @@
 
 #include <pqPropertyWidgetDecorator.h>
 
-/// Shows a property of a display where the dataset has blocks that are image data, rectilinear grids or hyper tree
-/// grids. The application's thread.
+/// Shows a property of a display where the dataset has blocks that are image data, rectilinear, structured,
+/// unstructured or hyper tree grids. The application's thread.
 class pqDSMVolumesDecorator : public pqPropertyWidgetDecorator
 {
   Q_OBJECT

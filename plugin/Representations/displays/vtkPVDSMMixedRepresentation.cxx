@@ -10,27 +10,15 @@
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
-#include "vtkHyperTreeGrid.h"
-#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPVLODActor.h"
 #include "vtkPolyData.h"
-#include "vtkRectilinearGrid.h"
 
 namespace
 {
-
-bool IsVolume(vtkDataObject* block)
-{
-  auto* const image = vtkImageData::SafeDownCast(block);
-  auto* const grid = vtkRectilinearGrid::SafeDownCast(block);
-  auto* const trees = vtkHyperTreeGrid::SafeDownCast(block);
-  return (image && image->GetDataDimension() == 3) || (grid && grid->GetDataDimension() == 3) ||
-    (trees && trees->GetDimension() == 3);
-}
 
 /// Returns a copy of a dataset's structure with those of its blocks that are volumes, or with the others.
 vtkSmartPointer<vtkDataObject> CopyBlocks(vtkDataObject* data, bool areVolumes)
@@ -39,7 +27,7 @@ vtkSmartPointer<vtkDataObject> CopyBlocks(vtkDataObject* data, bool areVolumes)
   auto* const tree = vtkDataObjectTree::SafeDownCast(copy);
   if (!tree)
   {
-    if (IsVolume(data) == areVolumes)
+    if (vtkDSMVolumeMapper::IsVolume(data) == areVolumes)
     {
       copy->ShallowCopy(data);
     }
@@ -50,7 +38,7 @@ vtkSmartPointer<vtkDataObject> CopyBlocks(vtkDataObject* data, bool areVolumes)
   leaf.TakeReference(tree->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    if (IsVolume(leaf->GetCurrentDataObject()) != areVolumes)
+    if (vtkDSMVolumeMapper::IsVolume(leaf->GetCurrentDataObject()) != areVolumes)
     {
       tree->SetDataSet(leaf, nullptr);
     }

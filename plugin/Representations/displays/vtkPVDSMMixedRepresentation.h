@@ -3,8 +3,8 @@
  * @class   vtkPVDSMMixedRepresentation
  * @brief   shows isosurfaces of some blocks of a dataset, and the outer surface of the others, ray traced by all ranks
  *
- * Blocks in three dimensions that are image data, rectilinear grids or hyper tree grids have isosurfaces. All other
- * blocks show their surface at the same time. With SHOW_SURFACE, all blocks show it.
+ * Blocks in three dimensions that are image data, rectilinear, structured, unstructured or hyper tree grids have
+ * isosurfaces. All other blocks show their surface at the same time. With SHOW_SURFACE, all blocks show it.
  */
 
 #ifndef vtkPVDSMMixedRepresentation_h

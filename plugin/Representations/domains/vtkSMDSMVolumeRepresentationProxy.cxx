@@ -195,7 +195,8 @@ void vtkSMDSMVolumeRepresentationProxy::ReportIgnored(vtkSMPVRepresentationProxy
 
 bool vtkSMDSMVolumeRepresentationProxy::IsOfSlices()
 {
-  return this->GetXMLName() == std::string("DSMSliceRepresentation");
+  const std::string name = this->GetXMLName();
+  return name == "DSMSliceRepresentation" || name == "DSMCellSliceRepresentation";
 }
 
 bool vtkSMDSMVolumeRepresentationProxy::IsShown(vtkSMProxy* display)
@@ -209,8 +210,8 @@ void vtkSMDSMVolumeRepresentationProxy::ChooseSlices(vtkSMProxy* display)
   const vtkPVDSMNoUndo noUndo;
   for (const char* name : SliceIndices)
   {
-    vtkSMProperty* const property = display->GetProperty(name);
-    if (property->FindDomain<vtkSMDSMSliceIndexDomain>()->IsAutomatic() &&
+    vtkSMProperty* const property = display->GetProperty(name); // grids of cells have none
+    if (property && property->FindDomain<vtkSMDSMSliceIndexDomain>()->IsAutomatic() &&
       !property->ResetToDomainDefaults())
     {
       vtkSMPropertyHelper(property).Set(-1); // the middle, which the frame finds out
@@ -234,7 +235,7 @@ void vtkSMDSMVolumeRepresentationProxy::TakeSlices()
     for (const char* name : { SliceIndices[axis], MoreSlices[axis] })
     {
       vtkSMProperty* const property = display->GetProperty(name);
-      if (count > 0)
+      if (property && count > 0)
       {
         property->FindDomain<vtkSMDSMSliceIndexDomain>()->SetNumberOfSamples(count);
       }
