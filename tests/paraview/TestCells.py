@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Structured and unstructured grids: isosurfaces beside Contour's, volumes and slices; the same on any number of ranks,
+as ParaView divides its sources."""
+
+from dsm_testing import *
+
+load_plugin()
+view = create_view(220, 180)
+view.UseFXAA = 0
+
+# Bends a piece of an image, so that no two cells have the same shape.
+CURVILINEAR = """
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+image, grid = self.GetInputDataObject(0, 0), self.GetOutputDataObject(0)
+grid.SetExtent(image.GetExtent())
+x, y, z = np.array([image.GetPoint(point) for point in range(image.GetNumberOfPoints())]).reshape(-1, 3).T
+points = vtkPoints()
+points.SetData(numpy_to_vtk(np.stack([x + np.sin(0.4 * y), y + np.sin(0.3 * z + 1.0), z + np.sin(0.5 * x)], axis=1),
+    deep=True))
+grid.SetPoints(points)
+grid.GetPointData().ShallowCopy(image.GetPointData())
+grid.GetCellData().ShallowCopy(image.GetCellData())
+"""
+# Smooth: Contour takes normals of unstructured grids from its triangles.
+wavelet = simple.Wavelet(WholeExtent=[-9, 9] * 3, XMag=2, YMag=4, ZMag=2)
+curvilinear = simple.ProgrammableFilter(Input=wavelet, OutputDataSetType="vtkStructuredGrid", Script=CURVILINEAR)
+hexahedra = simple.AppendDatasets(Input=curvilinear)
+tetrahedra = simple.Tetrahedralize(Input=curvilinear)
+of_cells = simple.PointDatatoCellData(Input=hexahedra)
+kinds = {"Curvilinear": (curvilinear, "vtkStructuredGrid"), "Hexahedra": (hexahedra, "vtkUnstructuredGrid"),
+         "Tetrahedra": (tetrahedra, "vtkUnstructuredGrid"), "OfCells": (of_cells, "vtkUnstructuredGrid")}
+
+
+def show_without_messages(display, name, **properties):
+    with Messages() as messages:
+        for property, value in properties.items():
+            setattr(display, property, value)
+        pixels = render(view, name)
+    check(not messages.text.strip(), f"{name}: no message: {messages.text.strip()}")
+    return pixels
+
+
+def show_contour(source, name):
+    points = source
+    if name == "OfCells":
+        # ParaView's means at points know no cells of other ranks, unless there are ghost cells.
+        points = simple.CellDatatoPointData(Input=simple.GhostCells(Input=source) if get_ranks() > 1 else source)
+    contour = simple.Contour(Input=points, ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0], ComputeScalars=0)
+    show_surface(contour, view)
+    pixels = render(view)
+    simple.Delete(contour)
+    return pixels
+
+
+pictures = {}
+for name, (source, type) in kinds.items():
+    source.UpdatePipeline()
+    check(source.GetDataInformation().GetDataSetTypeAsString() == type, f"{name} is a {type}")
+    display = show_traced(source, view)
+    check(display.DSMShow == "Surface", f"{name}: the surface is shown at first")
+    place_camera(view)
+    surface = render(view, f"{name}Surface")
+    array = ["CELLS" if name == "OfCells" else "POINTS", "RTData"]
+    # The array and the isovalue come from the data.
+    show_without_messages(display, f"{name}First", DSMShow="Isosurfaces")
+    check(list(display.DSMIsoArray) == array, f"{name}: {list(display.DSMIsoArray)} is chosen")
+    check(60.0 < display.DSMIsoValue < 260.0, f"{name}: isovalue {display.DSMIsoValue} is chosen")
+    pictures[name] = show_without_messages(display, name, DSMIsoValues=[150.0])
+    check((pictures[name] != surface).any(), f"{name}: isosurfaces are not the surface")
+    simple.Hide(source, view)
+    check_same_surface(pictures[name], show_contour(source, name), name)
+    display = simple.Show(source, view)
+    simple.ColorBy(display, tuple(array))
+    # A fixed range: ranks may know others.
+    simple.GetColorTransferFunction("RTData").RescaleTransferFunction(60.0, 260.0)
+    simple.GetOpacityTransferFunction("RTData").RescaleTransferFunction(60.0, 260.0)
+    colored = show_without_messages(display, f"{name}Colored", DSMIsoValues=[100.0, 200.0])
+    check((colored != pictures[name]).any(), f"{name}: colors")
+    volume = show_without_messages(display, f"{name}Volume", Representation="DSM Volume")
+    check(get_covered(volume).mean() > 0.05, f"{name}: a volume is shown")
+    slice_of_z = show_without_messages(display, f"{name}Slice", Representation="DSM Slices")
+    check(get_covered(slice_of_z).mean() > 0.05, f"{name}: a slice is shown")
+    other = show_without_messages(display, f"{name}OtherSlice", DSMSliceNormal=[1, 0, 0], DSMSliceOrigin=[2, 0, 0])
+    check((other != slice_of_z).any(), f"{name}: another slice")
+    display.DSMSlicePlane = 0
+    check(not get_covered(render(view)).any(), f"{name}: no slice")
+    simple.Hide(source, view)
+check_equal(pictures["Curvilinear"], pictures["Hexahedra"], "a structured grid is as its hexahedra", 0)
+
+# Blocks of every kind: the tetrahedra of a half, hexahedra, an image and a surface.
+sphere = simple.Sphere(Center=[20, 20, 0], Radius=6)
+moved = simple.Transform(Input=tetrahedra, Transform="Transform")
+moved.Transform.Translate = [24, 0, 0]
+moved.TransformAllInputVectors = 0
+group = simple.GroupDatasets(Input=[wavelet, moved, sphere])
+display = show_traced(group, view)
+place_camera(view)
+with Messages() as messages:
+    display.DSMShow, display.DSMIsoArray, display.DSMIsoValues = "Isosurfaces", ["POINTS", "RTData"], [150.0]
+    together = render(view, "Blocks")
+reports = [word for word in ("Warning:", "ERROR:") if word in messages.text]
+check(not reports, f"Blocks: no message: {messages.text if reports else ''}")
+simple.Hide(group, view)
+for source in (wavelet, moved):
+    show(source, view, [150.0], "RTData")
+show_traced(sphere, view)
+check_equal(render(view), together, "Blocks: as apart")

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Curvilinear and unstructured grids: cells of every shape.
+#include "VolumeMapperTest.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCellDataToPointData.h"
+#include "vtkCellType.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkContourFilter.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkMath.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
+#include "vtkPoints.h"
+#include "vtkStructuredGrid.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVolumeProperty.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace
+{
+
+using glm::dvec3;
+using glm::ivec3;
+
+/// Cells along an axis of the lattice that all grids here are made of.
+constexpr int Cells = 20;
+
+/// A lattice in [-16, 16]^3 whose lines are bent.
+dvec3 Bend(const dvec3& place)
+{
+  const dvec3 at = place / double(Cells) - 0.5;
+  return 32.0 *
+    (at + 0.04 * dvec3(std::sin(7.0 * at.y), std::sin(6.0 * at.z + 1.0), std::sin(8.0 * at.x)));
+}
+
+/// Over the edge, without a symmetry.
+double GetValue(const dvec3& place)
+{
+  return glm::length(place * dvec3(1.0, 1.1, 0.9) + dvec3(0.3, 0.2, 0.1)) / Edge;
+}
+
+vtkIdType GetLatticePoint(const ivec3& at)
+{
+  return at.x + (Cells + 1) * (at.y + (Cells + 1) * at.z);
+}
+
+vtkSmartPointer<vtkDoubleArray> MakeValues(vtkPointSet* grid)
+{
+  auto values = vtkSmartPointer<vtkDoubleArray>::New();
+  values->SetName("distance");
+  for (vtkIdType point = 0; point < grid->GetNumberOfPoints(); ++point)
+  {
+    dvec3 place;
+    grid->GetPoint(point, &place.x);
+    values->InsertNextValue(GetValue(place));
+  }
+  return values;
+}
+
+vtkSmartPointer<vtkPoints> MakePoints()
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  for (int k = 0; k <= Cells; ++k)
+  {
+    for (int j = 0; j <= Cells; ++j)
+    {
+      for (int i = 0; i <= Cells; ++i)
+      {
+        const dvec3 place = Bend(dvec3(i, j, k));
+        points->InsertNextPoint(&place.x);
+      }
+    }
+  }
+  return points;
+}
+
+/// Points of a cell of the lattice; x in bit 0, y in bit 1, z in bit 2.
+using Corners = std::array<vtkIdType, 8>;
+
+/// Cells that `add(grid, corners)` makes in each cell of the lattice.
+vtkSmartPointer<vtkUnstructuredGrid> MakeCells(
+  const std::function<void(vtkUnstructuredGrid*, const Corners&, const ivec3&)>& add)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(MakePoints());
+  grid->AllocateEstimate(6 * Cells * Cells * Cells, 8);
+  for (int k = 0; k < Cells; ++k)
+  {
+    for (int j = 0; j < Cells; ++j)
+    {
+      for (int i = 0; i < Cells; ++i)
+      {
+        Corners corners;
+        for (int corner = 0; corner < 8; ++corner)
+        {
+          corners[static_cast<std::size_t>(corner)] =
+            GetLatticePoint({ i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2) });
+        }
+        add(grid, corners, { i, j, k });
+      }
+    }
+  }
+  grid->GetPointData()->SetScalars(MakeValues(grid));
+  return grid;
+}
+
+void Add(vtkUnstructuredGrid* grid, int type, const std::vector<vtkIdType>& points)
+{
+  grid->InsertNextCell(type, static_cast<vtkIdType>(points.size()), points.data());
+}
+
+void AddHexahedron(vtkUnstructuredGrid* grid, const Corners& at)
+{
+  Add(grid, VTK_HEXAHEDRON, { at[0], at[1], at[3], at[2], at[4], at[5], at[7], at[6] });
+}
+
+void AddTetrahedra(vtkUnstructuredGrid* grid, const Corners& at)
+{
+  for (const auto& way : std::vector<ivec3>{
+         { 1, 2, 4 }, { 2, 1, 4 }, { 1, 4, 2 }, { 4, 1, 2 }, { 2, 4, 1 }, { 4, 2, 1 } })
+  {
+    Add(grid, VTK_TETRA,
+      { at[0], at[static_cast<std::size_t>(way.x)], at[static_cast<std::size_t>(way.x | way.y)],
+        at[7] });
+  }
+}
+
+void AddWedges(vtkUnstructuredGrid* grid, const Corners& at)
+{
+  Add(grid, VTK_WEDGE, { at[0], at[1], at[3], at[4], at[5], at[7] });
+  Add(grid, VTK_WEDGE, { at[0], at[3], at[2], at[4], at[7], at[6] });
+}
+
+/// Six around the middle, which is a point of its own.
+void AddPyramids(vtkUnstructuredGrid* grid, const Corners& at)
+{
+  dvec3 middle(0.0);
+  for (const vtkIdType corner : at)
+  {
+    dvec3 place;
+    grid->GetPoint(corner, &place.x);
+    middle += 0.125 * place;
+  }
+  const vtkIdType top = grid->GetPoints()->InsertNextPoint(&middle.x);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t x = std::size_t(1) << (axis + 1) % 3;
+    const std::size_t y = std::size_t(1) << (axis + 2) % 3;
+    for (const std::size_t side : { std::size_t(0), std::size_t(1) << axis })
+    {
+      Add(grid, VTK_PYRAMID, { at[side], at[side | x], at[side | x | y], at[side | y], top });
+    }
+  }
+}
+
+void AddPolyhedron(vtkUnstructuredGrid* grid, const Corners& at)
+{
+  const vtkIdType faces[] = { 4, at[0], at[2], at[6], at[4], 4, at[1], at[3], at[7], at[5], 4,
+    at[0], at[1], at[5], at[4], 4, at[2], at[3], at[7], at[6], 4, at[0], at[1], at[3], at[2], 4,
+    at[4], at[5], at[7], at[6] };
+  grid->InsertNextCell(VTK_POLYHEDRON, 8, at.data(), 6, faces);
+}
+
+/// Kinds in turn, with faces of four corners between them.
+void AddMixed(vtkUnstructuredGrid* grid, const Corners& at, const ivec3& index)
+{
+  const int kind = (index.x + 2 * index.y + index.z) % 3;
+  kind == 0 ? AddHexahedron(grid, at) : kind == 1 ? AddPyramids(grid, at) : AddPolyhedron(grid, at);
+}
+
+vtkSmartPointer<vtkStructuredGrid> MakeStructured()
+{
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetExtent(-3, Cells - 3, 5, Cells + 5, 0, Cells);
+  grid->SetPoints(MakePoints());
+  grid->GetPointData()->SetScalars(MakeValues(grid));
+  return grid;
+}
+
+/// Longitudes to 360 degrees, poles that are points, and more layers at the ground. The height is the value.
+vtkSmartPointer<vtkStructuredGrid> MakeGlobe(int fineness)
+{
+  const ivec3 size(36 * fineness + 1, 18 * fineness + 1, 9);
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetDimensions(size.x, size.y, size.z);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("distance");
+  for (int k = 0; k < size.z; ++k)
+  {
+    for (int j = 0; j < size.y; ++j)
+    {
+      for (int i = 0; i < size.x; ++i)
+      {
+        const double longitude = 2.0 * vtkMath::Pi() * (i % (size.x - 1)) / (size.x - 1);
+        const double latitude = vtkMath::Pi() * (double(j) / (size.y - 1) - 0.5);
+        const double wide = j == 0 || j == size.y - 1 ? 0.0 : std::cos(latitude);
+        const double radius = 8.0 + 6.0 * std::pow(double(k) / (size.z - 1), 1.5);
+        points->InsertNextPoint(radius * wide * std::cos(longitude),
+          radius * wide * std::sin(longitude), radius * std::sin(latitude));
+        values->InsertNextValue(radius / Edge);
+      }
+    }
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->SetScalars(values);
+  return grid;
+}
+
+class VolumeMapperCells : public VolumeMapper
+{
+protected:
+  VolumeMapperCells() { this->Mapper->AddObserver(vtkCommand::ErrorEvent, this->Errors); }
+
+  std::vector<double> Render(vtkDataObject* data)
+  {
+    this->Mapper->SetInputDataObject(data);
+    std::vector<double> distances = this->RenderTraced();
+    EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+    this->Errors->Clear();
+    return distances;
+  }
+  std::vector<double> RenderContour(vtkDataObject* data)
+  {
+    vtkNew<vtkContourFilter> contour;
+    contour->SetInputData(data);
+    contour->SetInputArrayToProcess(0, 0, 0, vtkDataObject::POINT, "distance");
+    contour->SetValue(0, this->Mapper->GetIsoValue(0));
+    contour->ComputeNormalsOff();
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputConnection(contour->GetOutputPort());
+    mapper->ScalarVisibilityOff();
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    this->Renderer->AddActor(actor);
+    std::vector<double> distances = this->RenderDistances();
+    this->Renderer->RemoveActor(actor);
+    return distances;
+  }
+  /// Pixels covered, and distances in those that both cover.
+  static void ExpectSame(const std::vector<double>& traced, const std::vector<double>& expected,
+    double share = 0.005, double apart = 0.05)
+  {
+    int differing = 0;
+    double sum = 0.0;
+    int both = 0;
+    for (std::size_t pixel = 0; pixel < traced.size(); ++pixel)
+    {
+      const bool isThere = std::isfinite(traced[pixel]);
+      differing += isThere == std::isfinite(expected[pixel]) ? 0 : 1;
+      if (isThere && std::isfinite(expected[pixel]))
+      {
+        ++both;
+        sum += std::abs(traced[pixel] - expected[pixel]);
+      }
+    }
+    EXPECT_GT(both, 1000);
+    EXPECT_LE(differing, share * both);
+    EXPECT_LE(sum, apart * both);
+  }
+  /// Expects an error that has a text.
+  void ExpectError(vtkDataObject* data, const char* text)
+  {
+    this->Mapper->SetInputDataObject(data);
+    EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
+    EXPECT_NE(this->Errors->GetErrorMessage().find(text), std::string::npos)
+      << this->Errors->GetErrorMessage();
+    this->Errors->Clear();
+  }
+
+  vtkNew<vtkTest::ErrorObserver> Errors;
+};
+
+} // namespace
+
+TEST_F(VolumeMapperCells, LinearCellsOfEveryShapeCoverWhatContourDoes)
+{
+  using Adder = std::function<void(vtkUnstructuredGrid*, const Corners&)>;
+  const std::map<std::string, Adder> kinds{ { "tetrahedra", AddTetrahedra },
+    { "hexahedra", AddHexahedron }, { "wedges", AddWedges }, { "pyramids", AddPyramids } };
+  for (const auto& [name, add] : kinds)
+  {
+    SCOPED_TRACE(name);
+    const auto grid = MakeCells([&add = add](vtkUnstructuredGrid* cells, const Corners& at,
+                                  const ivec3&) { add(cells, at); });
+    ExpectSame(this->Render(grid), this->RenderContour(grid));
+  }
+}
+
+TEST_F(VolumeMapperCells, PolyhedraAndMixedCells)
+{
+  const auto hexahedra = MakeCells(
+    [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3&) { AddHexahedron(grid, at); });
+  const std::vector<double> expected = this->RenderContour(hexahedra);
+  const auto polyhedra = MakeCells(
+    [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3&) { AddPolyhedron(grid, at); });
+  ExpectSame(this->Render(polyhedra), expected);
+  ExpectSame(this->Render(MakeCells(AddMixed)), expected);
+}
+
+TEST_F(VolumeMapperCells, StructuredGridsAreAsTheirHexahedra)
+{
+  const auto structured = MakeStructured();
+  const std::vector<double> traced = this->Render(structured);
+  ExpectSame(traced, this->RenderContour(structured));
+  const auto hexahedra = MakeCells(
+    [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3&) { AddHexahedron(grid, at); });
+  EXPECT_EQ(this->Render(hexahedra), traced);
+}
+
+TEST_F(VolumeMapperCells, AGlobeIsClosed)
+{
+  this->Mapper->SetIsoValue(0, 12.0 / Edge);
+  const auto coarse = MakeGlobe(1);
+  ExpectSame(this->Render(coarse), this->RenderContour(coarse));
+  const auto globe = MakeGlobe(5);
+  const std::vector<double> traced = this->Render(globe);
+  ExpectSame(traced, this->RenderContour(globe));
+  // No pixel is missing within its outline.
+  for (int row = 0; row < Size; ++row)
+  {
+    int changes = 0;
+    for (int column = 1; column < Size; ++column)
+    {
+      const auto pixel = static_cast<std::size_t>(row * Size + column);
+      changes += std::isfinite(traced[pixel]) == std::isfinite(traced[pixel - 1]) ? 0 : 1;
+    }
+    EXPECT_LE(changes, 2) << "row " << row;
+  }
+}
+
+TEST_F(VolumeMapperCells, CellsThatAreHidden)
+{
+  const auto structured = MakeStructured();
+  const int all = CountCovered(this->Render(structured));
+  // The half with the greater x.
+  for (vtkIdType point = 0; point < structured->GetNumberOfPoints(); ++point)
+  {
+    if (point % (Cells + 1) > Cells / 2)
+    {
+      structured->BlankPoint(point);
+    }
+  }
+  const std::vector<double> half = this->Render(structured);
+  EXPECT_LT(CountCovered(half), 0.75 * all);
+  EXPECT_GT(CountCovered(half), 0.25 * all);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  const auto add = [&](vtkUnstructuredGrid* grid, const Corners& at, const ivec3& index)
+  {
+    AddHexahedron(grid, at);
+    ghosts->InsertNextValue(index.x >= Cells / 2 ? vtkDataSetAttributes::DUPLICATECELL : 0);
+  };
+  const auto hexahedra = MakeCells(add);
+  hexahedra->GetCellData()->AddArray(ghosts);
+  EXPECT_EQ(this->Render(hexahedra), half);
+}
+
+TEST_F(VolumeMapperCells, ValuesOfCellsAreAveraged)
+{
+  const auto grid = MakeCells(AddMixed);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("distance");
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    double box[6];
+    grid->GetCellBounds(cell, box);
+    values->InsertNextValue(
+      GetValue(0.5 * dvec3(box[0] + box[1], box[2] + box[3], box[4] + box[5])));
+  }
+  grid->GetPointData()->Initialize();
+  grid->GetCellData()->SetScalars(values);
+  this->Mapper->SetIsoArrayOnCells(true);
+  vtkNew<vtkCellDataToPointData> points;
+  points->SetInputData(grid);
+  points->Update();
+  ExpectSame(this->Render(grid), this->RenderContour(points->GetOutput()));
+}
+
+TEST_F(VolumeMapperCells, ValuesChangeAndPartsAreMissing)
+{
+  const auto grid = MakeCells(AddMixed);
+  const std::vector<double> before = this->Render(grid);
+  vtkNew<vtkUnstructuredGrid> next; // of the same cells
+  next->ShallowCopy(grid);
+  vtkNew<vtkDoubleArray> values;
+  values->DeepCopy(grid->GetPointData()->GetScalars());
+  for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+  {
+    values->SetValue(point, 1.3 * values->GetValue(point));
+  }
+  next->GetPointData()->SetScalars(values);
+  const std::vector<double> after = this->Render(next);
+  ExpectSame(after, this->RenderContour(next));
+  EXPECT_LT(CountCovered(after), CountCovered(before));
+  EXPECT_EQ(this->Render(grid), before);
+  for (vtkIdType point = 0; point < values->GetNumberOfTuples(); ++point)
+  {
+    if (next->GetPoint(point)[0] > 0.0)
+    {
+      values->SetValue(point, std::nan(""));
+    }
+  }
+  values->Modified();
+  next->Modified();
+  EXPECT_LT(CountCovered(this->Render(next)), 0.8 * CountCovered(after));
+}
+
+TEST_F(VolumeMapperCells, BlocksOfEveryKindHaveLooks)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  const auto structured = MakeStructured();
+  blocks->SetBlock(0, structured);
+  blocks->SetBlock(1, MakeBall());
+  const std::vector<double> first = this->Render(structured);
+  const std::vector<double> second = this->Render(MakeBall());
+  std::vector<double> both = this->Render(blocks);
+  for (std::size_t pixel = 0; pixel < both.size(); ++pixel)
+  {
+    ASSERT_EQ(both[pixel], std::min(first[pixel], second[pixel]));
+  }
+  this->Mapper->SetBlockVisibility(1, false);
+  EXPECT_EQ(this->Render(blocks), second);
+}
+
+TEST_F(VolumeMapperCells, DamagedGridsAreRefused)
+{
+  const auto grid = MakeCells(
+    [](vtkUnstructuredGrid* cells, const Corners& at, const ivec3&) { AddHexahedron(cells, at); });
+  const vtkIdType damaged[] = { 0, 1, 2, 1000000 };
+  grid->InsertNextCell(VTK_TETRA, 4, damaged);
+  grid->GetCellData()->Initialize();
+  this->ExpectError(grid, "refers to point 1000000, but the grid has only 9261 points");
+  vtkNew<vtkUnstructuredGrid> flat;
+  flat->SetPoints(MakePoints());
+  const vtkIdType corners[] = { 0, 1, 22 };
+  flat->InsertNextCell(VTK_TRIANGLE, 3, corners);
+  flat->GetPointData()->SetScalars(MakeValues(flat));
+  this->ExpectError(flat, "have no volume");
+}
+
+TEST_F(VolumeMapperCells, SlicesAndVolumes)
+{
+  const auto grid = MakeCells(AddMixed);
+  this->Mapper->SetNumberOfIsoValues(0);
+  this->Mapper->SlicingOn();
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(0.0, 0.0, 1.0);
+  vtkNew<vtkPlaneCollection> planes;
+  planes->AddItem(plane);
+  this->Mapper->SetSlicePlanes(planes);
+  EXPECT_GT(CountCovered(this->Render(grid)), 3000);
+  this->Mapper->SlicingOff();
+  vtkNew<vtkColorTransferFunction> colors;
+  colors->AddRGBPoint(0.0, 1.0, 0.8, 0.2);
+  colors->AddRGBPoint(1.0, 0.2, 0.4, 1.0);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(0.0, 0.2);
+  opacity->AddPoint(0.4, 0.05);
+  opacity->AddPoint(0.6, 0.0);
+  this->Volume->GetProperty()->SetColor(colors);
+  this->Volume->GetProperty()->SetScalarOpacity(opacity);
+  this->Volume->GetProperty()->SetInterpolationTypeToLinear();
+  this->Renderer->AddVolume(this->Volume);
+  const auto cells = this->Draw(this->Mapper, grid);
+  const auto structured = this->Draw(this->Mapper, MakeStructured());
+  EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+  EXPECT_GT(*std::max_element(cells->Begin(), cells->End()), 60);
+  EXPECT_LT(GetDifference(cells, structured), 0.5);
+}
