@@ -76,6 +76,12 @@ for name, (source, type) in kinds.items():
     # A fixed range: ranks may know others.
     simple.GetColorTransferFunction("RTData").RescaleTransferFunction(60.0, 260.0)
     simple.GetOpacityTransferFunction("RTData").RescaleTransferFunction(60.0, 260.0)
+    # The cells in which the surface, or the slice, is seen.
+    everything = [0, 0, 219, 179]
+    display.DSMIsoValues = [150.0]
+    simple.Render(view)
+    cells, _, _ = select(view, source, "cells", everything)
+    check(50 < cells < source.GetDataInformation().GetNumberOfCells() / 4, f"{name}: {cells} cells are selected")
     colored = show_without_messages(display, f"{name}Colored", DSMIsoValues=[100.0, 200.0])
     check((colored != pictures[name]).any(), f"{name}: colors")
     volume = show_without_messages(display, f"{name}Volume", Representation="DSM Volume")
@@ -84,6 +90,10 @@ for name, (source, type) in kinds.items():
     check(get_covered(slice_of_z).mean() > 0.05, f"{name}: a slice is shown")
     other = show_without_messages(display, f"{name}OtherSlice", DSMSliceNormal=[1, 0, 0], DSMSliceOrigin=[2, 0, 0])
     check((other != slice_of_z).any(), f"{name}: another slice")
+    cells, _, bounds = select(view, source, "cells", everything)
+    check(cells > 50 and bounds[0] < 2.0 < bounds[1] and bounds[1] - bounds[0] < 6.0,
+          f"{name}: {cells} cells in {bounds} are selected in the slice")
+    simple.ClearSelection(source)
     display.DSMSlicePlane = 0
     check(not get_covered(render(view)).any(), f"{name}: no slice")
     simple.Hide(source, view)

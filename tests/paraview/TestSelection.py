@@ -8,21 +8,8 @@ view = create_view()
 view.UseFXAA = 0
 
 
-def get_selected(source, kind, region):
-    """Coordinates of the cells or points that are selected, as ParaView extracts them."""
-    simple.ClearSelection(source)
-    {"cells": simple.SelectSurfaceCells, "points": simple.SelectSurfacePoints}[kind](
-        Rectangle=region, View=view)
-    extract = simple.ExtractSelection(Input=source)
-    extract.UpdatePipeline()
-    merged = simple.MergeBlocks(extract)
-    merged.UpdatePipeline()
-    information = merged.GetDataInformation()
-    result = (information.GetNumberOfCells(), information.GetNumberOfPoints(),
-              numpy.round(information.GetBounds(), 5).tolist())
-    simple.Delete(merged)
-    simple.Delete(extract)
-    return result
+def get_selected(*arguments):
+    return select(view, *arguments)
 
 
 # A mesh: cells and points of the dataset itself.

@@ -126,6 +126,23 @@ def grab(view, name=None):
     return pixels.reshape(height, width, -1)[:, :, :3].astype(int)
 
 
+def select(view, source, kind, region):
+    """Coordinates of the cells or points that are selected, as ParaView extracts them: their numbers and bounds."""
+    simple.ClearSelection(source)
+    {"cells": simple.SelectSurfaceCells, "points": simple.SelectSurfacePoints}[kind](
+        Rectangle=region, View=view)
+    extract = simple.ExtractSelection(Input=source)
+    extract.UpdatePipeline()
+    merged = simple.MergeBlocks(extract)
+    merged.UpdatePipeline()
+    information = merged.GetDataInformation()
+    result = (information.GetNumberOfCells(), information.GetNumberOfPoints(),
+              numpy.round(information.GetBounds(), 5).tolist())
+    simple.Delete(merged)
+    simple.Delete(extract)
+    return result
+
+
 def get_rows(display):
     """The statistics of each rank (vtkDSMStatistics::GetJson)."""
     display.SMProxy.UpdatePropertyInformation()

@@ -2,6 +2,8 @@
 // Curvilinear and unstructured grids: cells of every shape.
 #include "VolumeMapperTest.h"
 
+#include "vtkBoundingBox.h"
+#include "vtkCell.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellDataToPointData.h"
@@ -15,6 +17,7 @@
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUnstructuredGrid.h"
@@ -180,6 +183,61 @@ void AddMixed(vtkUnstructuredGrid* grid, const Corners& at, const ivec3& index)
   kind == 0 ? AddHexahedron(grid, at) : kind == 1 ? AddPyramids(grid, at) : AddPolyhedron(grid, at);
 }
 
+/// Cells with nodes on a lattice of half the spacing, of which every other point is a corner.
+class NodeGrid
+{
+public:
+  /// Makes cells of a type of two lattice cells on each axis: `corners` in units of these, and the nodes between pairs,
+  /// or in the middles of lists, of corners.
+  NodeGrid(int type, const std::vector<std::vector<ivec3>>& cells,
+    const std::vector<std::vector<int>>& between)
+  {
+    this->Grid->SetPoints(vtkNew<vtkPoints>());
+    this->Grid->AllocateEstimate(Cells * Cells * Cells, 27);
+    for (int number = 0; number < Cells * Cells * Cells / 8; ++number)
+    {
+      const ivec3 first = 4 *
+        ivec3(number % (Cells / 2), number / (Cells / 2) % (Cells / 2), number * 4 / Cells / Cells);
+      for (const std::vector<ivec3>& corners : cells)
+      {
+        std::vector<vtkIdType> nodes;
+        for (const ivec3& corner : corners)
+        {
+          nodes.push_back(this->FindNode(first + 2 * corner));
+        }
+        for (const std::vector<int>& some : between)
+        {
+          ivec3 sum(0);
+          for (const int corner : some)
+          {
+            sum += corners[static_cast<std::size_t>(corner)];
+          }
+          nodes.push_back(this->FindNode(first + 2 * sum / static_cast<int>(some.size())));
+        }
+        this->Grid->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+      }
+    }
+    this->Grid->GetPointData()->SetScalars(MakeValues(this->Grid));
+  }
+
+  vtkNew<vtkUnstructuredGrid> Grid;
+
+private:
+  vtkIdType FindNode(const ivec3& at)
+  {
+    const auto [node, isNew] =
+      this->Nodes.try_emplace({ at.x, at.y, at.z }, this->Grid->GetNumberOfPoints());
+    if (isNew)
+    {
+      const dvec3 place = Bend(dvec3(at) / 2.0);
+      this->Grid->GetPoints()->InsertNextPoint(&place.x);
+    }
+    return node->second;
+  }
+
+  std::map<std::array<int, 3>, vtkIdType> Nodes;
+};
+
 vtkSmartPointer<vtkStructuredGrid> MakeStructured()
 {
   auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
@@ -310,6 +368,60 @@ TEST_F(VolumeMapperCells, PolyhedraAndMixedCells)
   ExpectSame(this->Render(MakeCells(AddMixed)), expected);
 }
 
+TEST_F(VolumeMapperCells, CellsOfSecondDegree)
+{
+  using Lists = std::vector<std::vector<int>>;
+  // In units of half a cell.
+  const std::vector<ivec3> cube{ { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 }, { 0, 0, 2 },
+    { 2, 0, 2 }, { 2, 2, 2 }, { 0, 2, 2 } };
+  const Lists edges{ { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }, { 4, 5 }, { 5, 6 }, { 6, 7 }, { 7, 4 },
+    { 0, 4 }, { 1, 5 }, { 2, 6 }, { 3, 7 } };
+  Lists all = edges;
+  for (const std::vector<int>& face : Lists{ { 0, 3, 7, 4 }, { 1, 2, 6, 5 }, { 0, 1, 5, 4 },
+         { 3, 2, 6, 7 }, { 0, 1, 2, 3 }, { 4, 5, 6, 7 }, { 0, 1, 2, 3, 4, 5, 6, 7 } })
+  {
+    all.push_back(face);
+  }
+  std::vector<std::vector<ivec3>> tetrahedra;
+  for (const auto& way :
+    std::vector<std::array<int, 2>>{ { 0, 1 }, { 1, 0 }, { 0, 2 }, { 2, 0 }, { 1, 2 }, { 2, 1 } })
+  {
+    ivec3 one(0);
+    one[way[0]] = 2;
+    ivec3 two = one;
+    two[way[1]] = 2;
+    tetrahedra.push_back({ ivec3(0), one, two, ivec3(2) });
+  }
+  std::vector<std::vector<ivec3>> pyramids;
+  for (const std::vector<int>& face : Lists{ { 0, 3, 7, 4 }, { 1, 2, 6, 5 }, { 0, 1, 5, 4 },
+         { 3, 2, 6, 7 }, { 0, 1, 2, 3 }, { 4, 5, 6, 7 } })
+  {
+    std::vector<ivec3>& pyramid = pyramids.emplace_back();
+    for (const int corner : face)
+    {
+      pyramid.push_back(cube[static_cast<std::size_t>(corner)]);
+    }
+    pyramid.emplace_back(1);
+  }
+  const Lists ofTetrahedron{ { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+  const Lists ofWedge{ { 0, 1 }, { 1, 2 }, { 2, 0 }, { 3, 4 }, { 4, 5 }, { 5, 3 }, { 0, 3 },
+    { 1, 4 }, { 2, 5 } };
+  const Lists ofPyramid{ { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }, { 0, 4 }, { 1, 4 }, { 2, 4 },
+    { 3, 4 } };
+  const std::vector<std::vector<ivec3>> wedges{ { cube[0], cube[1], cube[2], cube[4], cube[5],
+                                                  cube[6] },
+    { cube[0], cube[2], cube[3], cube[4], cube[6], cube[7] } };
+  const NodeGrid grids[] = { { VTK_QUADRATIC_TETRA, tetrahedra, ofTetrahedron },
+    { VTK_QUADRATIC_HEXAHEDRON, { cube }, edges }, { VTK_TRIQUADRATIC_HEXAHEDRON, { cube }, all },
+    { VTK_QUADRATIC_WEDGE, wedges, ofWedge }, { VTK_QUADRATIC_PYRAMID, pyramids, ofPyramid },
+    { VTK_LAGRANGE_TETRAHEDRON, tetrahedra, ofTetrahedron } };
+  for (const NodeGrid& grid : grids)
+  {
+    SCOPED_TRACE(grid.Grid->GetCellType(0));
+    ExpectSame(this->Render(grid.Grid), this->RenderContour(grid.Grid));
+  }
+}
+
 TEST_F(VolumeMapperCells, StructuredGridsAreAsTheirHexahedra)
 {
   const auto structured = MakeStructured();
@@ -433,6 +545,43 @@ TEST_F(VolumeMapperCells, BlocksOfEveryKindHaveLooks)
   }
   this->Mapper->SetBlockVisibility(1, false);
   EXPECT_EQ(this->Render(blocks), second);
+}
+
+TEST_F(VolumeMapperCells, IsosurfacesAsTriangles)
+{
+  const auto grid = MakeCells(AddMixed);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(grid->GetNumberOfCells());
+  ghosts->FillValue(0);
+  constexpr vtkIdType hidden = 1000; // cells, from the first on
+  std::fill_n(ghosts->GetPointer(0), hidden, vtkDataSetAttributes::HIDDENCELL);
+  grid->GetCellData()->AddArray(ghosts);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(1, grid);
+  this->Mapper->SetInputDataObject(blocks);
+  this->Renderer->AddVolume(this->Volume);
+  this->Window->Render();
+  vtkNew<vtkMultiBlockDataSet> surfaces;
+  ASSERT_TRUE(this->Scene->ExtractIsosurfaces(this->Mapper, false, surfaces));
+  ASSERT_EQ(surfaces->GetNumberOfBlocks(), 1u);
+  auto* const triangles = vtkPolyData::SafeDownCast(surfaces->GetBlock(0));
+  vtkDataArray* const cells = triangles->GetCellData()->GetArray("vtkOriginalCellIds");
+  vtkDataArray* const normals = triangles->GetPointData()->GetNormals();
+  ASSERT_GT(triangles->GetNumberOfCells(), 1000);
+  for (vtkIdType number = 0; number < triangles->GetNumberOfCells(); ++number)
+  {
+    const auto cell = static_cast<vtkIdType>(cells->GetTuple1(number));
+    EXPECT_GE(cell, hidden);
+    double box[6];
+    triangles->GetCellBounds(number, box);
+    const dvec3 center = 0.5 * dvec3(box[0] + box[1], box[2] + box[3], box[4] + box[5]);
+    EXPECT_TRUE(vtkBoundingBox(grid->GetCell(cell)->GetBounds()).ContainsPoint(&center.x));
+    dvec3 normal;
+    normals->GetTuple(triangles->GetCell(number)->GetPointId(0), &normal.x);
+    EXPECT_GT(std::abs(glm::dot(normal, glm::normalize(center))), 0.7);
+    EXPECT_EQ(triangles->GetCellData()->GetArray("vtkCompositeIndex")->GetTuple1(number), 2);
+  }
 }
 
 TEST_F(VolumeMapperCells, DamagedGridsAreRefused)

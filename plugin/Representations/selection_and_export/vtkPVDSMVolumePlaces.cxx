@@ -2,6 +2,7 @@
 #include "vtkPVDSMVolumePlaces.h"
 
 #include "vtkDSMScene.h"
+#include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMGridPlace.h"
 
 #include "vtkCamera.h"
@@ -11,15 +12,19 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFloatArray.h"
+#include "vtkGenericCell.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkRenderer.h"
+#include "vtkStaticCellLocator.h"
 #include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnsignedIntArray.h"
@@ -42,6 +47,56 @@ void Multiply(vtkMatrix4x4* matrix, const double point[3], double result[3])
 }
 
 } // namespace
+
+/// Places that are in cells of one dataset.
+class vtkPVDSMVolumePlaces::FoundPlaces
+{
+public:
+  explicit FoundPlaces(vtkDataSet* data)
+    : Ghosts(data->GetCellGhostArray())
+  {
+    this->PointIds->SetName("vtkOriginalPointIds");
+    this->CellIds->SetName("vtkOriginalCellIds");
+    this->Blocks->SetName("vtkCompositeIndex");
+  }
+
+  /// Leaves out places in ghost cells and hidden ones. `point`: the nearest one of the cell.
+  void Add(const Place& place, vtkIdType cell, vtkIdType point)
+  {
+    constexpr int hidden =
+      vtkDataSetAttributes::DUPLICATECELL | static_cast<int>(vtkDataSetAttributes::HIDDENCELL);
+    if (this->Ghosts && (this->Ghosts->GetValue(cell) & hidden) != 0)
+    {
+      return;
+    }
+    const vtkIdType vertex = this->Points->InsertNextPoint(place.data());
+    this->Vertices->InsertNextCell(1, &vertex);
+    this->CellIds->InsertNextValue(cell);
+    this->PointIds->InsertNextValue(point);
+  }
+
+  /// `block`: flat index of the dataset.
+  vtkPolyData* Finish(unsigned block)
+  {
+    this->Blocks->SetNumberOfValues(this->CellIds->GetNumberOfValues());
+    this->Blocks->FillValue(block);
+    this->Found->SetPoints(this->Points);
+    this->Found->SetVerts(this->Vertices);
+    this->Found->GetPointData()->AddArray(this->PointIds);
+    this->Found->GetCellData()->AddArray(this->CellIds);
+    this->Found->GetCellData()->AddArray(this->Blocks);
+    return this->Found;
+  }
+
+private:
+  vtkUnsignedCharArray* Ghosts;
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkCellArray> Vertices;
+  vtkNew<vtkIdTypeArray> PointIds;
+  vtkNew<vtkIdTypeArray> CellIds;
+  vtkNew<vtkUnsignedIntArray> Blocks;
+  vtkNew<vtkPolyData> Found;
+};
 
 void vtkPVDSMVolumePlaces::Forget()
 {
@@ -83,25 +138,10 @@ void vtkPVDSMVolumePlaces::Find(vtkDSMScene* scene, vtkRenderer* renderer)
   }
 }
 
-void vtkPVDSMVolumePlaces::AddImage(vtkDataSet* image, unsigned block,
-  const std::vector<Place>& places, vtkMultiBlockDataSet* geometry)
+void vtkPVDSMVolumePlaces::AddImage(
+  vtkDataSet* image, const std::vector<Place>& places, FoundPlaces& found)
 {
-  if (!image)
-  {
-    return;
-  }
   constexpr double slack = 1e-3; // relative to a cell
-  constexpr int hidden =
-    vtkDataSetAttributes::DUPLICATECELL | static_cast<int>(vtkDataSetAttributes::HIDDENCELL);
-  vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> vertices;
-  vtkNew<vtkIdTypeArray> pointIds;
-  pointIds->SetName("vtkOriginalPointIds");
-  vtkNew<vtkIdTypeArray> cellIds;
-  cellIds->SetName("vtkOriginalCellIds");
-  vtkNew<vtkUnsignedIntArray> blocks;
-  blocks->SetName("vtkCompositeIndex");
   const int* const extent = vtkPVDSMGridPlace::GetExtent(image);
   for (const Place& place : places)
   {
@@ -120,28 +160,64 @@ void vtkPVDSMVolumePlaces::AddImage(vtkDataSet* image, unsigned block,
         std::clamp(static_cast<int>(std::floor(index[axis])), first, std::max(first, last - 1));
       point[axis] = std::clamp(static_cast<int>(std::lround(index[axis])), first, last);
     }
-    if (!isInside)
+    if (isInside)
     {
-      continue;
+      found.Add(place, vtkStructuredData::ComputeCellIdForExtent(extent, cell),
+        vtkStructuredData::ComputePointIdForExtent(extent, point));
     }
-    const vtkIdType cellId = vtkStructuredData::ComputeCellIdForExtent(extent, cell);
-    if (ghosts && (ghosts->GetValue(cellId) & hidden) != 0)
-    {
-      continue;
-    }
-    const vtkIdType vertex = points->InsertNextPoint(place.data());
-    vertices->InsertNextCell(1, &vertex);
-    cellIds->InsertNextValue(cellId);
-    pointIds->InsertNextValue(vtkStructuredData::ComputePointIdForExtent(extent, point));
-    blocks->InsertNextValue(block);
   }
-  vtkNew<vtkPolyData> found;
-  found->SetPoints(points);
-  found->SetVerts(vertices);
-  found->GetPointData()->AddArray(pointIds);
-  found->GetCellData()->AddArray(cellIds);
-  found->GetCellData()->AddArray(blocks);
-  geometry->SetBlock(geometry->GetNumberOfBlocks(), found);
+}
+
+void vtkPVDSMVolumePlaces::AddGrid(
+  vtkPointSet* grid, const std::vector<Place>& places, FoundPlaces& found)
+{
+  constexpr double slack = 1e-12; // squared, relative to the dataset
+  const double tolerance = slack * grid->GetLength() * grid->GetLength();
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(grid);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  std::vector<double> weights(static_cast<std::size_t>(grid->GetMaxCellSize()));
+  for (Place place : places)
+  {
+    double parameters[3];
+    const vtkIdType id =
+      locator->FindCell(place.data(), tolerance, cell, parameters, weights.data());
+    if (id < 0 || cell->GetCellDimension() < 3)
+    {
+      continue;
+    }
+    const auto getDistance = [&](vtkIdType corner)
+    { return vtkMath::Distance2BetweenPoints(place.data(), cell->GetPoints()->GetPoint(corner)); };
+    vtkIdType nearest = 0;
+    for (vtkIdType corner = 1; corner < cell->GetNumberOfPoints(); ++corner)
+    {
+      nearest = getDistance(corner) < getDistance(nearest) ? corner : nearest;
+    }
+    found.Add(place, id, cell->GetPointId(nearest));
+  }
+}
+
+void vtkPVDSMVolumePlaces::AddData(vtkDataObject* data, unsigned block,
+  const std::vector<Place>& places, vtkMultiBlockDataSet* geometry)
+{
+  vtkDataSet* const image = vtkPVDSMGridPlace::FindImage(data);
+  auto* const grid = vtkPointSet::SafeDownCast(data);
+  const bool isGrid = grid && vtkDSMVolumeMapper::IsVolume(grid);
+  if (!image && !isGrid)
+  {
+    return;
+  }
+  FoundPlaces found(image ? image : grid);
+  if (image)
+  {
+    AddImage(image, places, found);
+  }
+  else
+  {
+    AddGrid(grid, places, found);
+  }
+  geometry->SetBlock(geometry->GetNumberOfBlocks(), found.Finish(block));
 }
 
 vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMVolumePlaces::MakePoints(
@@ -158,15 +234,14 @@ vtkSmartPointer<vtkMultiBlockDataSet> vtkPVDSMVolumePlaces::MakePoints(
   auto* const composite = vtkCompositeDataSet::SafeDownCast(data);
   if (!composite)
   {
-    AddImage(vtkPVDSMGridPlace::FindImage(data), 0, places, geometry);
+    AddData(data, 0, places, geometry);
     return geometry;
   }
   vtkSmartPointer<vtkCompositeDataIterator> leaf;
   leaf.TakeReference(composite->NewIterator());
   for (leaf->InitTraversal(); !leaf->IsDoneWithTraversal(); leaf->GoToNextItem())
   {
-    AddImage(vtkPVDSMGridPlace::FindImage(leaf->GetCurrentDataObject()),
-      leaf->GetCurrentFlatIndex(), places, geometry);
+    AddData(leaf->GetCurrentDataObject(), leaf->GetCurrentFlatIndex(), places, geometry);
   }
   return geometry;
 }

@@ -12,6 +12,7 @@ class vtkDataObject;
 class vtkDataSet;
 class vtkMatrix4x4;
 class vtkMultiBlockDataSet;
+class vtkPointSet;
 class vtkRenderer;
 
 /// The places that the pixels of a picture of volumes show, for selections: where half of the light is covered.
@@ -23,13 +24,16 @@ public:
   void Find(vtkDSMScene* scene, vtkRenderer* renderer);
   void Forget();
 
-  /// Makes the points of this rank's data, an image or a composite dataset of images.
+  /// Makes the points of this rank's data, an image, a grid of cells, or a composite dataset of these.
   vtkSmartPointer<vtkMultiBlockDataSet> MakePoints(
     vtkDataObject* data, vtkMatrix4x4* dataToWorld) const;
 
 private:
   using Place = std::array<double, 3>;
-  static void AddImage(vtkDataSet* image, unsigned block, const std::vector<Place>& places,
+  class FoundPlaces;
+  static void AddImage(vtkDataSet* image, const std::vector<Place>& places, FoundPlaces& found);
+  static void AddGrid(vtkPointSet* grid, const std::vector<Place>& places, FoundPlaces& found);
+  static void AddData(vtkDataObject* data, unsigned block, const std::vector<Place>& places,
     vtkMultiBlockDataSet* geometry);
 
   std::vector<Place> Places; ///< world

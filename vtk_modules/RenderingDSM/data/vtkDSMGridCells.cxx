@@ -375,18 +375,23 @@ bool vtkDSMGridCells::IsShown(std::uint64_t cell) const
 {
   const Piece& piece = this->Pieces[this->FindByCell(cell)];
   const std::uint64_t number = cell - piece.FirstCell;
-  const std::uint64_t owner = this->FindOwner(piece, number);
-  const auto own = static_cast<vtkIdType>(owner);
-  if (piece.CellGhosts && (piece.CellGhosts->GetValue(own) & CellsLeftOut) != 0)
-  {
-    return false;
-  }
-  const bool isWhole = number < piece.OwnCells;
-  if (piece.Size.x == 0 && isWhole && CountCorners(piece.Data->GetCellType(own)) == 0)
-  {
-    return false;
-  }
-  return !piece.PointGhosts || !this->HasHiddenPoint(piece, owner);
+  const bool isWhole = piece.Size.x == 0 && number < piece.OwnCells;
+  return (!isWhole || CountCorners(piece.Data->GetCellType(static_cast<vtkIdType>(number))) > 0) &&
+    this->IsVisible(piece, this->FindOwner(piece, number));
+}
+
+bool vtkDSMGridCells::IsShown(const Place& cell) const
+{
+  const Piece& piece = this->Pieces[cell.Grid];
+  return ::HasVolume(piece.Data->GetCellType(cell.Number)) &&
+    this->IsVisible(piece, static_cast<std::uint64_t>(cell.Number));
+}
+
+bool vtkDSMGridCells::IsVisible(const Piece& piece, std::uint64_t cell) const
+{
+  const bool isGhost = piece.CellGhosts &&
+    (piece.CellGhosts->GetValue(static_cast<vtkIdType>(cell)) & CellsLeftOut) != 0;
+  return !isGhost && (!piece.PointGhosts || !this->HasHiddenPoint(piece, cell));
 }
 
 bool vtkDSMGridCells::HasHiddenPoint(const Piece& piece, std::uint64_t cell) const

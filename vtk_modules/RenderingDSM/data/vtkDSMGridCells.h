@@ -66,6 +66,8 @@ public:
   };
   /// The cell of a grid that a cell is, or is cut from.
   Place FindOwner(std::uint64_t cell) const;
+  /// Returns whether a cell of a grid is shown, as it is or cut.
+  bool IsShown(const Place& cell) const;
   /// The point of a point of a grid.
   std::uint64_t GetPoint(const Place& place) const
   {
@@ -142,7 +144,9 @@ private:
   /// Finds the points of a cell of a piece, by the piece's numbers; returns how many.
   int FindCorners(const Piece& piece, std::uint64_t cell, std::uint64_t points[MostCorners]) const;
 
-  /// `cell`: of the grid itself.
+  /// Returns whether a cell, of the grid itself, is no ghost cell and not hidden.
+  bool IsVisible(const Piece& piece, std::uint64_t cell) const;
+  /// Likewise.
   bool HasHiddenPoint(const Piece& piece, std::uint64_t cell) const;
 
   std::vector<Piece> Pieces;

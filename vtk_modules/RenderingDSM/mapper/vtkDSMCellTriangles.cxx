@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMCellTriangles.h"
 
+#include "vtkCell.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -18,6 +19,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 vtkDSMCellTriangles::vtkDSMCellTriangles(
   const double bounds[6], vtkIdType points, bool isMirrored, bool hasBlocks)
@@ -77,38 +79,68 @@ void vtkDSMCellTriangles::Add(
       this->Voxel->GetPointIds()->SetId(corner, cell.Points[from]);
     }
     isFilled = true;
-    this->Voxel->Contour(isovalue, this->Values, this->Locator, this->Triangles->GetVerts(),
-      this->Triangles->GetLines(), this->Triangles->GetPolys(), this->Dataset->GetPointData(),
-      this->Triangles->GetPointData(), this->Dataset->GetCellData(), cell.Id,
-      this->Triangles->GetCellData());
+    this->Contour(this->Voxel, this->Values, cell.Id, isovalue);
   }
-  while (this->GetNumberOfTriangles() < this->Triangles->GetPolys()->GetNumberOfCells())
+  if (isFilled)
   {
-    this->CellIds->InsertNextValue(cell.Id);
-    this->BlocksOfCells->InsertNextValue(block);
+    this->Finish(
+      cell.Id, block, { cell.Places, cell.Places + 8 }, { cell.Points, cell.Points + 8 });
   }
-  this->FinishPoints(cell, block);
 }
 
-/// The points that the cell has added.
-void vtkDSMCellTriangles::FinishPoints(const Cell& cell, unsigned int block)
+void vtkDSMCellTriangles::Add(vtkCell* cell, vtkDataArray* values, vtkIdType id, unsigned int block,
+  const std::vector<double>& isovalues)
 {
+  for (const double isovalue : isovalues)
+  {
+    this->Contour(cell, values, id, isovalue);
+  }
+  std::vector<glm::dvec3> places(static_cast<std::size_t>(cell->GetNumberOfPoints()));
+  std::vector<vtkIdType> points;
+  for (glm::dvec3& place : places)
+  {
+    const auto corner = static_cast<vtkIdType>(points.size());
+    cell->GetPoints()->GetPoint(corner, &place.x);
+    points.push_back(cell->GetPointId(corner));
+  }
+  this->Finish(id, block, places, points);
+}
+
+void vtkDSMCellTriangles::Contour(
+  vtkCell* cell, vtkDataArray* values, vtkIdType id, double isovalue)
+{
+  cell->Contour(isovalue, values, this->Locator, this->Triangles->GetVerts(),
+    this->Triangles->GetLines(), this->Triangles->GetPolys(), this->Dataset->GetPointData(),
+    this->Triangles->GetPointData(), this->Dataset->GetCellData(), id,
+    this->Triangles->GetCellData());
+}
+
+void vtkDSMCellTriangles::Finish(vtkIdType id, unsigned int block,
+  const std::vector<glm::dvec3>& places, const std::vector<vtkIdType>& points)
+{
+  while (this->GetNumberOfTriangles() < this->Triangles->GetPolys()->GetNumberOfCells())
+  {
+    this->CellIds->InsertNextValue(id);
+    this->BlocksOfCells->InsertNextValue(block);
+  }
   constexpr double inward = 1e-3;
-  const glm::dvec3 center = 0.5 * (cell.Places[0] + cell.Places[7]);
-  vtkPoints* const points = this->Triangles->GetPoints();
-  while (this->PointIds->GetNumberOfValues() < points->GetNumberOfPoints())
+  const glm::dvec3 center = std::accumulate(places.begin(), places.end(), glm::dvec3(0.0)) /
+    static_cast<double>(places.size());
+  vtkPoints* const all = this->Triangles->GetPoints();
+  while (this->PointIds->GetNumberOfValues() < all->GetNumberOfPoints())
   {
     glm::dvec3 place;
-    points->GetPoint(this->PointIds->GetNumberOfValues(), &place.x);
+    all->GetPoint(this->PointIds->GetNumberOfValues(), &place.x);
     this->Within.push_back(glm::mix(place, center, inward));
     // It is on an edge, whose ends are nearer than all other corners.
-    const auto getDistance = [&](int corner) { return glm::distance(place, cell.Places[corner]); };
-    int nearest = 0;
-    for (int corner = 1; corner < 8; ++corner)
+    std::size_t nearest = 0;
+    for (std::size_t corner = 1; corner < places.size(); ++corner)
     {
-      nearest = getDistance(corner) <= getDistance(nearest) ? corner : nearest;
+      nearest = glm::distance(place, places[corner]) <= glm::distance(place, places[nearest])
+        ? corner
+        : nearest;
     }
-    this->PointIds->InsertNextValue(cell.Points[nearest]);
+    this->PointIds->InsertNextValue(points[nearest]);
     this->BlocksOfPoints->InsertNextValue(block);
   }
 }

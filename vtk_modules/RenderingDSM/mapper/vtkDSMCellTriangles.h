@@ -12,6 +12,7 @@
 
 #include <vector>
 
+class vtkCell;
 class vtkDataArray;
 class vtkDoubleArray;
 class vtkIdTypeArray;
@@ -43,6 +44,11 @@ public:
   /// Adds the triangles of surfaces in a cell. `block`: flat index of its dataset.
   void Add(const Cell& cell, unsigned int block, const std::vector<double>& isovalues);
 
+  /// The same of a cell of any shape, by VTK's class of it. `values`: of its points, in their order; finite. `id`: its
+  /// number in its dataset.
+  void Add(vtkCell* cell, vtkDataArray* values, vtkIdType id, unsigned int block,
+    const std::vector<double>& isovalues);
+
   vtkIdType GetNumberOfTriangles() const;
   /// One for each point: a place near it, within a cell that has it.
   const std::vector<glm::dvec3>& GetPlacesWithin() const { return this->Within; }
@@ -50,7 +56,11 @@ public:
   vtkPolyData* Finish();
 
 private:
-  void FinishPoints(const Cell& cell, unsigned int block);
+  /// Adds the triangles of one surface. `id`: of the cell in its dataset.
+  void Contour(vtkCell* cell, vtkDataArray* values, vtkIdType id, double isovalue);
+  /// Completes the triangles that a cell has added. `places` and `points`: of its corners.
+  void Finish(vtkIdType id, unsigned int block, const std::vector<glm::dvec3>& places,
+    const std::vector<vtkIdType>& points);
 
   int Flip; ///< corners of a cell are corners of the voxel where these bits differ
   vtkNew<vtkPolyData> Triangles;

@@ -11,13 +11,18 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkGenericCell.h"
+#include "vtkIdList.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <variant>
 
@@ -80,21 +85,79 @@ public:
           triangles.Add(cell, blocks[cell.Dataset], this->Isovalues);
           this->CheckCount(triangles);
         });
-      if (triangles.GetNumberOfTriangles() > 0)
+      this->Finish(part, field, cells->GetColored() != nullptr, triangles);
+    }
+    for (const vtkDSMOwnGrid& grid :
+      this->Volume.Data->GetParts()[part]->FindOwnGrids(this->Volume.GetIso()->Choice))
+    {
+      if (this->CheckCells({ grid.Data }))
       {
-        vtkPolyData* const surface = triangles.Finish();
-        this->Count += triangles.GetNumberOfTriangles();
-        this->AddNormals(field, triangles.GetPlacesWithin(), surface);
-        if (!cells->GetColored())
-        {
-          this->AddColors(part, triangles.GetPlacesWithin(), surface);
-        }
-        this->Surfaces->SetBlock(this->Surfaces->GetNumberOfBlocks(), surface);
+        this->AddGrid(part, field, grid);
       }
     }
   }
 
 private:
+  void AddGrid(std::size_t part, const rt::AnyField& field, const vtkDSMOwnGrid& grid)
+  {
+    vtkDSMCellTriangles triangles(grid.Data->GetBounds(),
+      grid.Data->GetNumberOfPoints() / CellsForPoint, false, !this->Blocks.empty());
+    this->TakeColors(grid.Data, triangles);
+    const unsigned int block = this->FindBlock(grid.Data);
+    vtkNew<vtkGenericCell> cell;
+    vtkNew<vtkIdList> points;
+    vtkNew<vtkDoubleArray> values;
+    for (vtkIdType id = 0; id < grid.Data->GetNumberOfCells(); ++id)
+    {
+      if (grid.IsShown[static_cast<std::size_t>(id)] == 0)
+      {
+        continue;
+      }
+      grid.Data->GetCellPoints(id, points);
+      values->SetNumberOfTuples(points->GetNumberOfIds());
+      grid.Values->GetTuples(points, values);
+      if (this->MeetsAny(values))
+      {
+        grid.Data->GetCell(id, cell);
+        triangles.Add(cell, values, id, block, this->Isovalues);
+        this->CheckCount(triangles);
+      }
+    }
+    this->Finish(part, field, true, triangles);
+  }
+
+  /// Returns whether all values are finite, and a surface is among them.
+  bool MeetsAny(vtkDoubleArray* values) const
+  {
+    const double* const begin = values->GetPointer(0);
+    const double* const end = begin + values->GetNumberOfTuples();
+    if (!std::all_of(begin, end, [](double value) { return std::isfinite(value); }))
+    {
+      return false;
+    }
+    const auto [least, greatest] = std::minmax_element(begin, end);
+    return std::any_of(this->Isovalues.begin(), this->Isovalues.end(),
+      [low = *least, high = *greatest](double isovalue)
+      { return low < isovalue && isovalue <= high; });
+  }
+
+  /// `isColored`: the triangles have what colors them.
+  void Finish(
+    std::size_t part, const rt::AnyField& field, bool isColored, vtkDSMCellTriangles& triangles)
+  {
+    if (triangles.GetNumberOfTriangles() > 0)
+    {
+      vtkPolyData* const surface = triangles.Finish();
+      this->Count += triangles.GetNumberOfTriangles();
+      this->AddNormals(field, triangles.GetPlacesWithin(), surface);
+      if (!isColored)
+      {
+        this->AddColors(part, triangles.GetPlacesWithin(), surface);
+      }
+      this->Surfaces->SetBlock(this->Surfaces->GetNumberOfBlocks(), surface);
+    }
+  }
+
   /// Returns the flat index of a dataset; 0 where there are no blocks.
   unsigned int FindBlock(vtkDataObject* dataset) const
   {

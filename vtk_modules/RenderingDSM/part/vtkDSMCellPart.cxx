@@ -15,6 +15,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -28,6 +29,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -95,6 +97,43 @@ void AddKinds(vtkUnstructuredGrid* grid, bricks::ByteHash& hash)
     }
   }
   hash.Add(types.data(), types.size());
+}
+
+vtkSmartPointer<vtkDoubleArray> ReadPoints(vtkPointSet* grid, const Reader& read)
+{
+  auto values = vtkSmartPointer<vtkDoubleArray>::New();
+  values->SetNumberOfTuples(grid->GetNumberOfPoints());
+  for (vtkIdType point = 0; point < grid->GetNumberOfPoints(); ++point)
+  {
+    values->SetValue(point, read(point));
+  }
+  return values;
+}
+
+/// The means of the values of cells at points; NaN where there are none.
+vtkSmartPointer<vtkDoubleArray> AverageOwnCells(vtkPointSet* grid, const Reader& read)
+{
+  auto sums = vtkSmartPointer<vtkDoubleArray>::New();
+  sums->SetNumberOfTuples(grid->GetNumberOfPoints());
+  sums->FillValue(0.0);
+  std::vector<int> counts(static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  vtkNew<vtkIdList> points;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    const double value = read(cell);
+    grid->GetCellPoints(cell, points);
+    for (vtkIdType corner = 0; std::isfinite(value) && corner < points->GetNumberOfIds(); ++corner)
+    {
+      const vtkIdType point = points->GetId(corner);
+      sums->SetValue(point, sums->GetValue(point) + value);
+      ++counts[static_cast<std::size_t>(point)];
+    }
+  }
+  for (vtkIdType point = 0; point < sums->GetNumberOfTuples(); ++point)
+  {
+    sums->SetValue(point, sums->GetValue(point) / counts[static_cast<std::size_t>(point)]);
+  }
+  return sums;
 }
 
 class CellPartValues final : public vtkDSMPartValues
@@ -455,7 +494,26 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMCellPart::Publish(
   return std::make_shared<CellPartValues>(field);
 }
 
-vtkDSMPart::OwnCells vtkDSMCellPart::FindOwnCells(const vtkDSMPartValues&, const Choice&) const
+vtkDSMPart::OwnGrids vtkDSMCellPart::FindOwnGrids(const Choice& choice) const
 {
-  return {};
+  OwnGrids found;
+  const vtkDSMGridCells::Cuts none(this->Own.size());
+  const vtkDSMGridCells source(this->Own, none);
+  for (std::size_t own = 0; own < this->Own.size(); ++own)
+  {
+    Info info;
+    vtkPointSet* const grid = this->Own[own];
+    if (vtkDataArray* const array = vtkDSMImageArrays::Find(grid, choice, info))
+    {
+      const Reader read = MakeReader(array, choice.Component, info.Valid);
+      vtkDSMOwnGrid& one = found.emplace_back();
+      one.Data = grid;
+      one.Values = choice.OnCells ? AverageOwnCells(grid, read) : ReadPoints(grid, read);
+      for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+      {
+        one.IsShown.push_back(source.IsShown(vtkDSMGridCells::Place{ own, cell }) ? 1 : 0);
+      }
+    }
+  }
+  return found;
 }

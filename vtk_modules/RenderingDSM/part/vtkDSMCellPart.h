@@ -38,7 +38,8 @@ public:
   /// cell by cell.
   std::shared_ptr<vtkDSMPartValues> Publish(const Request& request, const std::vector<Info>& infos,
     std::shared_ptr<vtkDSMPartValues> old) const override;
-  OwnCells FindOwnCells(const vtkDSMPartValues& values, const Choice& choice) const override;
+  /// Values of cells become those of points with what this rank has of cells, ghost cells included.
+  OwnGrids FindOwnGrids(const Choice& choice) const override;
 
 private:
   struct Cells;

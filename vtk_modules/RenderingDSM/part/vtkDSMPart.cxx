@@ -42,6 +42,16 @@ bool vtkDSMPart::MayTakeOver(const vtkDSMPartValues&) const
   return false;
 }
 
+vtkDSMPart::OwnCells vtkDSMPart::FindOwnCells(const vtkDSMPartValues&, const Choice&) const
+{
+  return {};
+}
+
+vtkDSMPart::OwnGrids vtkDSMPart::FindOwnGrids(const Choice&) const
+{
+  return {};
+}
+
 std::shared_ptr<vtkDSMPartValues> vtkDSMPart::PublishCoarser(
   const vtkDSMPartValues&, int, const Request&) const
 {

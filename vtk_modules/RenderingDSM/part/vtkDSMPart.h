@@ -7,6 +7,7 @@
 #include "vtkDSMBlockLooks.h"
 #include "vtkDSMImageArrays.h"
 #include "vtkDSMOwnCells.h"
+#include "vtkDSMOwnGrid.h"
 #include "vtkDSMPartValues.h"
 #include "vtkDSMRankGroup.h"
 
@@ -22,14 +23,15 @@ class vtkAbstractArray;
 class vtkBoundingBox;
 
 /// A piece of a dataset that is shown as one field: a lattice, levels that lie within one another, or cells of any
-/// shape. Its data may be on any ranks; every rank has the same parts in the same order. Keeps this rank's data alive, without a copy.
-/// Methods documented as collective need every rank. Failures are dsm::Error, the same on every rank.
+/// shape. Its data may be on any ranks; every rank has the same parts in the same order. Keeps this rank's data alive,
+/// without a copy. Methods documented as collective need every rank. Failures are dsm::Error, the same on every rank.
 class vtkDSMPart
 {
 public:
   using Choice = vtkDSMImageArrays::Choice;
   using Info = vtkDSMImageArrays::Info;
   using OwnCells = std::vector<std::unique_ptr<vtkDSMOwnCells>>;
+  using OwnGrids = std::vector<vtkDSMOwnGrid>;
 
   /// Appearance that was set for some cells, in indices of the part (of levels: of the coarsest).
   struct Block
@@ -75,7 +77,9 @@ public:
     const vtkDSMPartValues& finest, int level, const Request& request) const;
 
   /// Local. This rank's cells, with their datasets: for isosurfaces as triangles. `values`: of the array.
-  virtual OwnCells FindOwnCells(const vtkDSMPartValues& values, const Choice& choice) const = 0;
+  virtual OwnCells FindOwnCells(const vtkDSMPartValues& values, const Choice& choice) const;
+  /// Local. The same of cells of other shapes, in grids.
+  virtual OwnGrids FindOwnGrids(const Choice& choice) const;
 
 protected:
   explicit vtkDSMPart(std::shared_ptr<vtkDSMRankGroup> group);
