@@ -86,7 +86,9 @@ private:
     }
     const double inverse = 1.0 / determinant;
     const double t = Add(u * a.Depth, v * b.Depth, w * c.Depth) * inverse * ray.Shear[2];
-    const double value = Add(u * a.Value, v * b.Value, w * c.Value) * inverse;
+    // Rounding may not leave the face's values: of three equal ones it is that.
+    const double value = std::clamp(Add(u * a.Value, v * b.Value, w * c.Value) * inverse,
+      std::min(std::min(a.Value, b.Value), c.Value), std::max(std::max(a.Value, b.Value), c.Value));
     if (t < this->Enter)
     {
       this->Enter = t;
