@@ -6,6 +6,7 @@ std::vector<RecordedScene> CreateRecordedScenes()
   std::vector<RecordedScene> scenes;
   AddVolumeScenes(scenes);
   AddLevelScenes(scenes);
+  AddCellScenes(scenes);
   AddMeshScenes(scenes);
   AddLightScenes(scenes);
   AddMediumScenes(scenes);

@@ -20,6 +20,7 @@ struct RecordedScene
 /// Types, shapes, missing data, bricks and colors of volumes.
 void AddVolumeScenes(std::vector<RecordedScene>& scenes);
 /// Levels of leaves, with every jump and holes: isosurfaces, slices, media.
+void AddCellScenes(std::vector<RecordedScene>& scenes);
 void AddLevelScenes(std::vector<RecordedScene>& scenes);
 /// Media: types, shapes, transfer functions, media in one another and with surfaces, and the light that gets through.
 void AddMediumScenes(std::vector<RecordedScene>& scenes);

@@ -2,12 +2,11 @@
 #ifndef FieldKinds_h
 #define FieldKinds_h
 
-#include "tests/support/CellModel.h"
 #include "tests/support/FunctionVolume.h"
 #include "tests/support/LevelModel.h"
+#include "tests/support/PublishedCells.h"
 #include "tests/support/QuadraticField.h"
 
-#include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/levels/PublishLevels.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
@@ -21,7 +20,6 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace FieldKinds
 {
@@ -125,23 +123,9 @@ struct Cells
     { return static_cast<CellModel::Kind>((box.x / 3 + box.y / 5 + box.z / 4) % 4); };
     settings.IsOwn = [&](const Index3& box)
     { return (box.x + box.z) / 3 % messenger.GetSize() == messenger.GetRank(); };
-    const CellModel model(std::move(settings));
-    bricks::CornerRoutes routes;
-    bricks::SortedBrickSettings sorting;
-    sorting.BrickBytes = 8192;
-    constexpr auto place = dsm::BlockStore::Place::Memory;
-    const auto cells =
-      bricks::PublishCells("cells", model, sorting, store, messenger, place, routes);
-    const auto getValue = [&](std::uint64_t point)
-    { return function.Evaluate(model.GetPlaces()[point]); };
-    std::vector<bricks::PackedGradient> gradients;
-    for (const glm::dvec3& at : model.GetPlaces())
-    {
-      const glm::dvec3 gradient = function.GetGradient(at);
-      gradients.emplace_back(&gradient.x);
-    }
-    return bricks::PublishCellValues(
-      "values", cells, routes, getValue, gradients, 2, store, messenger, place);
+    return PublishCellModel(
+      CellModel(std::move(settings)), [&](const glm::dvec3& p) { return function.Evaluate(p); },
+      messenger, store);
   }
   static FieldType Create(const std::shared_ptr<const bricks::CellValues>& values)
   {
