@@ -57,12 +57,19 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
   {
     return isSet;
   }
-  if (this->GetNumberOfStrings() == 0)
+  const auto isGhosts = [this](unsigned int number)
+  { return std::string(this->GetString(number)) == vtkDataSetAttributes::GhostArrayName(); };
+  unsigned int first = 0;
+  while (first < this->GetNumberOfStrings() && isGhosts(first))
+  {
+    ++first;
+  }
+  if (first == this->GetNumberOfStrings())
   {
     return isSet;
   }
   // Arrays of points come first.
-  const int association = this->GetFieldAssociation(0);
+  const int association = this->GetFieldAssociation(first);
   const std::string name = chosen.GetAsString(Association + 1);
   vtkPVDataSetAttributesInformation* const attributes = data->GetAttributeInformation(association);
   vtkPVArrayInformation* const scalars =
@@ -72,13 +79,13 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
   {
     return isSet;
   }
-  for (unsigned int number = 0;
+  for (unsigned int number = first;
        number < this->GetNumberOfStrings() && this->GetFieldAssociation(number) == association;
        ++number)
   {
     vtkPVArrayInformation* const array =
       data->GetArrayInformation(this->GetString(number), association);
-    if (array && array->GetNumberOfComponents() == 1)
+    if (array && array->GetNumberOfComponents() == 1 && !isGhosts(number))
     {
       chosen.Set(Association, association);
       chosen.Set(Association + 1, this->GetString(number));
@@ -86,6 +93,6 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
     }
   }
   chosen.Set(Association, association);
-  chosen.Set(Association + 1, this->GetString(0));
+  chosen.Set(Association + 1, this->GetString(first));
   return 1;
 }

@@ -7,6 +7,7 @@
 #include "vtkSMDSMSliceIndexDomain.h"
 
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVXMLElement.h"
 #include "vtkPVXMLParser.h"
@@ -259,7 +260,9 @@ void vtkSMDSMVolumeRepresentationProxy::ChooseArray(vtkSMPVRepresentationProxy* 
   {
     for (unsigned int index = 0; index < count; ++index)
     {
-      if (arrays->GetFieldAssociation(index) == association)
+      const bool isGhosts =
+        std::string(arrays->GetString(index)) == vtkDataSetAttributes::GhostArrayName();
+      if (arrays->GetFieldAssociation(index) == association && !isGhosts)
       {
         const vtkPVDSMNoUndo noUndo;
         display->SetScalarColoring(arrays->GetString(index), association);
