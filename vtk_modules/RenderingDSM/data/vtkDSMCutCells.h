@@ -18,9 +18,9 @@ class vtkIdList;
 class vtkUnstructuredGrid;
 
 /// The cells of one unstructured grid that bricks of cells cannot have as they are, cut into linear ones:
-/// - Polyhedra, and prisms of five and six sides, into pyramids and tetrahedra around the mean of their points. Faces of
-///   more than four points are cut into triangles around the mean of the face's points, so that both sides of a face
-///   cut it alike. Faces of four points stay faces, as they are beside hexahedra.
+/// - Polyhedra, and prisms of five and six sides, into pyramids and tetrahedra around the mean of their points. Faces
+///   of more than four points are cut into triangles around the mean of the face's points, so that both sides of a
+///   face cut it alike. Faces of four points stay faces, as they are beside hexahedra.
 /// - Quadratic, Lagrange and Bezier cells at their own nodes, and where a regular lattice of nodes has gaps, at points
 ///   of the cell's own interpolation.
 /// - Convex point sets as VTK cuts them.
@@ -106,7 +106,7 @@ private:
   std::vector<vtkIdType> Owners[2];      ///< likewise
   std::vector<std::size_t> Begins;       ///< of each further point's points, in Ids
   std::vector<std::uint32_t> Ids;
-  /// Of the further points; each list of weights is kept once.
+  /// For each further point, the weights of its points. Each list is kept once.
   std::vector<const std::vector<double>*> Weights;
   std::set<std::vector<double>> AllWeights;
   std::unordered_multimap<std::uint64_t, std::uint32_t> Known; ///< further points by a hash

@@ -21,8 +21,8 @@ class vtkUnsignedCharArray;
 /// where they lie. Left out are cells without a volume, ghost cells, hidden cells, and cells with a hidden point.
 ///
 /// A grid's cells are numbered as VTK numbers them; then follow the linear cells that others were cut into
-/// (vtkDSMCutCells), of which the whole is left out. Points likewise, whatever the cells are for. Wedges are the same here whichever side the order
-/// of their points calls the upper one (VTK 9.7 turns it).
+/// (vtkDSMCutCells), of which the whole is left out. Points likewise, whatever the cells are for. VTK 9.7 turns the
+/// order of a wedge's points; the wedge is the same.
 class vtkDSMGridCells final : public bricks::CellSource
 {
 public:
@@ -37,7 +37,7 @@ public:
   /// Local. Throws dsm::Error for a cell with a point that does not exist.
   static Cuts Cut(const Grids& grids);
 
-  /// What cells are for.
+  /// The use of the cells.
   enum class Use
   {
     Bricks,
@@ -144,7 +144,7 @@ private:
   /// Finds the points of a cell of a piece, by the piece's numbers; returns how many.
   int FindCorners(const Piece& piece, std::uint64_t cell, std::uint64_t points[MostCorners]) const;
 
-  /// Returns whether a cell, of the grid itself, is no ghost cell and not hidden.
+  /// Returns whether a cell, of the grid itself, is not a ghost cell and not hidden.
   bool IsVisible(const Piece& piece, std::uint64_t cell) const;
   /// Likewise.
   bool HasHiddenPoint(const Piece& piece, std::uint64_t cell) const;

@@ -157,9 +157,8 @@ private:
   /// One medium, of one of the arrays, for each of the volume's parts. `groups`: of the parts' media; 0: none yet.
   void AddMedium(const vtkDSMVolumeLook& look, std::size_t number, const glm::dmat4& dataToWorld,
     std::vector<int>& groups, rt::Scene& scene);
-  /// Returns whether all values of the medium are at the points of lattices, or in their cells, not on levels or at
-  /// points of other grids.
-  bool IsOfSamples() const;
+  /// Returns what the medium's values are of.
+  vtkDSMVolumeLook::Grids GetGrids() const;
   /// Returns how the values of a component of the medium are found.
   vtkDSMVolumeLook::Sampling GetMediumSampling(int component) const;
   /// Returns whether that array's values are colors.

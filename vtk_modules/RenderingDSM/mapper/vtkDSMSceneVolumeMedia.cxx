@@ -23,18 +23,28 @@ bool vtkDSMSceneVolume::HasDirectColors() const
   return this->GetColoring().Choice.Component == vtkDSMImagePiece::Color;
 }
 
-bool vtkDSMSceneVolume::IsOfSamples() const
+vtkDSMVolumeLook::Grids vtkDSMSceneVolume::GetGrids() const
 {
+  using Grids = vtkDSMVolumeLook::Grids;
   const vtkDSMVolumeData::Values& parts = this->GetIso()->GetParts();
-  return std::all_of(parts.begin(), parts.end(),
-    [](const auto& values) {
-      return !values || std::holds_alternative<rt::LatticeField>(values->GetField(glm::dmat4(1.0)));
-    });
+  const auto areAll = [&parts](auto is)
+  {
+    return std::all_of(parts.begin(), parts.end(),
+      [&](const auto& values) { return !values || is(values->GetField(glm::dmat4(1.0))); });
+  };
+  if (areAll(
+        [](const rt::AnyField& field) { return std::holds_alternative<rt::LatticeField>(field); }))
+  {
+    return Grids::Lattices;
+  }
+  const bool areCells =
+    areAll([](const rt::AnyField& field) { return std::holds_alternative<rt::CellField>(field); });
+  return areCells ? Grids::Cells : Grids::Others;
 }
 
 vtkDSMVolumeLook::Sampling vtkDSMSceneVolume::GetMediumSampling(int component) const
 {
-  return this->GetLook().GetSampling(this->Data->GetArrays(), this->IsOfSamples(), component);
+  return this->GetLook().GetSampling(this->Data->GetArrays(), this->GetGrids(), component);
 }
 
 std::shared_ptr<const rt::ColorMap> vtkDSMSceneVolume::GetMediumColors(bool hasOpacity)
@@ -77,7 +87,7 @@ std::optional<std::array<double, 2>> vtkDSMSceneVolume::GetSecondRange(
 void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
 {
   this->MissingFeatures.clear();
-  look.FindMissingFeatures(this->Data->GetArrays(), this->IsOfSamples(), this->MissingFeatures);
+  look.FindMissingFeatures(this->Data->GetArrays(), this->GetGrids(), this->MissingFeatures);
   this->Warnings.insert(
     this->Warnings.end(), this->MissingFeatures.begin(), this->MissingFeatures.end());
   if (look.GetComponents(this->Data->GetArrays()) == vtkDSMVolumeLook::Components::Refused)

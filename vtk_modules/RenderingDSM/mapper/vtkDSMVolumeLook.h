@@ -51,10 +51,16 @@ public:
   };
   /// `arrays`: those that there are.
   Components GetComponents(const vtkDSMImageArrays& arrays) const;
+  /// The grids that have the values of a medium.
+  enum class Grids
+  {
+    Lattices, ///< all are at the points of lattices, or in their cells
+    Cells, ///< all are of curvilinear or unstructured grids, where VTK's mappers interpolate in any case
+    Others ///< some are on levels, or they are of grids of several kinds
+  };
   /// Adds warnings about features that the property requests for the array's components, and media do not have yet.
-  /// `isOfSamples`: see FindNearestObstacle.
   void FindMissingFeatures(
-    const vtkDSMImageArrays& arrays, bool isOfSamples, std::vector<std::string>& warnings) const;
+    const vtkDSMImageArrays& arrays, Grids grids, std::vector<std::string>& warnings) const;
   /// The value of a place in a medium. Linear: interpolated between samples. Nearest: that of the nearest sample.
   /// Categories: the same, and only annotated values have a color and an opacity.
   enum class Sampling
@@ -63,9 +69,8 @@ public:
     Nearest,
     Categories
   };
-  /// Returns what the property requests for a component, or Linear where that is not possible. `isOfSamples`: see
-  /// FindNearestObstacle.
-  Sampling GetSampling(const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const;
+  /// Returns what the property requests for a component, or Linear where that is not possible.
+  Sampling GetSampling(const vtkDSMImageArrays& arrays, Grids grids, int component) const;
   /// All that the colors and opacities of the medium depend on: the values' range, the length of a cell, that of
   /// the medium, the property and its time, the blend mode and the range of an average, the component whose
   /// functions are taken and its weight. And the sampling of values; a two-dimensional function (null: there is
@@ -132,9 +137,8 @@ private:
     std::string Reason;
     std::string Remedy;
   };
-  /// Null: there is none. `isOfSamples`: all values are at the points of lattices, or in their cells, not on levels.
-  std::optional<Obstacle> FindNearestObstacle(
-    const vtkDSMImageArrays& arrays, bool isOfSamples) const;
+  /// Null: there is none.
+  std::optional<Obstacle> FindNearestObstacle(const vtkDSMImageArrays& arrays, Grids grids) const;
   /// Why a two-dimensional function that the property requests does not define the medium. Null: it does.
   std::optional<Obstacle> FindFunction2DObstacle(const vtkDSMImageArrays& arrays) const;
   /// Returns whether the property requests one.

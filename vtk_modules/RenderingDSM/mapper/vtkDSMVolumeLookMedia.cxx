@@ -148,16 +148,16 @@ vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetRequestedSampling(int component)
 }
 
 std::optional<vtkDSMVolumeLook::Obstacle> vtkDSMVolumeLook::FindNearestObstacle(
-  const vtkDSMImageArrays& arrays, bool isOfSamples) const
+  const vtkDSMImageArrays& arrays, Grids grids) const
 {
   if (this->Mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND)
   {
     return Obstacle{ "in this blend mode",
       "Call SetBlendModeToComposite(). In ParaView, set Blend Mode to Composite." };
   }
-  if (!isOfSamples)
+  if (grids != Grids::Lattices)
   {
-    return Obstacle{ "for AMR, and for hyper tree, curvilinear and unstructured grids",
+    return Obstacle{ "for AMR and hyper tree grids, and for curvilinear and unstructured grids",
       "Draw slices with InterpolateSlicesOff(). In ParaView, use DSM Slices without Interpolate "
       "Values, or apply Resample To Image." };
   }
@@ -172,14 +172,14 @@ std::optional<vtkDSMVolumeLook::Obstacle> vtkDSMVolumeLook::FindNearestObstacle(
 }
 
 vtkDSMVolumeLook::Sampling vtkDSMVolumeLook::GetSampling(
-  const vtkDSMImageArrays& arrays, bool isOfSamples, int component) const
+  const vtkDSMImageArrays& arrays, Grids grids, int component) const
 {
-  return this->FindNearestObstacle(arrays, isOfSamples) ? Sampling::Linear
-                                                        : this->GetRequestedSampling(component);
+  return this->FindNearestObstacle(arrays, grids) ? Sampling::Linear
+                                                  : this->GetRequestedSampling(component);
 }
 
 void vtkDSMVolumeLook::FindMissingFeatures(
-  const vtkDSMImageArrays& arrays, bool isOfSamples, std::vector<std::string>& warnings) const
+  const vtkDSMImageArrays& arrays, Grids grids, std::vector<std::string>& warnings) const
 {
   vtkVolumeProperty* const property = vtkVolume::SafeDownCast(this->Prop)->GetProperty();
   const auto warn = [&](bool isMissing, const std::string& feature, const std::string& remedy)
@@ -217,13 +217,13 @@ void vtkDSMVolumeLook::FindMissingFeatures(
     "The faces have the colors of the color function. Call CappingOff(). In ParaView, turn off "
     "Cap.");
   const Sampling requested = this->GetRequestedSampling(0);
-  const auto found = this->FindNearestObstacle(arrays, isOfSamples);
+  const auto found = this->FindNearestObstacle(arrays, grids);
   const Obstacle obstacle = found.value_or(Obstacle{});
   warn(found && requested == Sampling::Categories, "a color for each category " + obstacle.Reason,
     obstacle.Remedy +
       " Or call IndexedLookupOff() on the color function. In ParaView, turn off "
       "Interpret Values As Categories.");
-  warn(found && requested == Sampling::Nearest,
+  warn(found && requested == Sampling::Nearest && grids != Grids::Cells,
     "the nearest sample (VTK's default) instead of linear interpolation " + obstacle.Reason,
     "Call SetInterpolationTypeToLinear(). In ParaView, set Interpolation Type to Linear. For "
     "labels: " +

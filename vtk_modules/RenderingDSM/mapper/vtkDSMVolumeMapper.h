@@ -8,13 +8,13 @@
  * composite dataset whose blocks are any of these but AMR, or nothing. Ranks may have different ones. Other blocks, and
  * cells without a volume, are not shown.
  *
- * It stands in for vtkGPUVolumeRayCastMapper, for AMR for vtkAMRVolumeMapper, and for vtkUnstructuredGridVolumeMapper: the blend mode Composite (the
- * default) shows the volume as a medium, by the color and opacity functions and the unit distance of the
- * vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of AverageIPScalarRange) and additive show what they
- * show there. ScalarMode and SelectScalarArray() choose the array. In the blend mode Composite, the property's
- * InterpolationType counts, and an IndexedLookup of its color function makes categories; values of cells, of AMR and
- * of hyper tree grids are trilinear always, and so are those of all other modes. Curvilinear and unstructured grids are
- * split into tetrahedra, in which values are linear. Shading is
+ * It stands in for vtkGPUVolumeRayCastMapper, for AMR for vtkAMRVolumeMapper, and for
+ * vtkUnstructuredGridVolumeMapper: the blend mode Composite (the default) shows the volume as a medium, by the color
+ * and opacity functions and the unit distance of the vtkVolume's vtkVolumeProperty. Maximum, minimum, average (of
+ * AverageIPScalarRange) and additive show what they show there. ScalarMode and SelectScalarArray() choose the array.
+ * In the blend mode Composite, the property's InterpolationType counts, and an IndexedLookup of its color function
+ * makes categories; values of cells, of AMR and of hyper tree grids are trilinear always, and so are those of all other
+ * modes. Curvilinear and unstructured grids are split into tetrahedra, in which values are linear always. Shading is
  * VTK's, also gradient opacity and two-dimensional transfer functions; with shadows and ambient occlusion of the light
  * options, volumes shade themselves.
  * The blend mode Slice is not supported; the mapper warns about it.

@@ -174,8 +174,10 @@ Collected Collect(
   if (isOf(isAnyOther) && !isAny && !areFlat)
   {
     throw dsm::Error(
-      "The blocks of the dataset are neither image data nor rectilinear, structured, unstructured "
-      "or hyper tree grids, one of which ray tracing requires. Apply Resample To Image first.");
+      "The blocks of the dataset are neither image data nor rectilinear, structured or "
+      "unstructured "
+      "grids nor hyper tree grids, one of which ray tracing requires. Apply Resample To Image "
+      "first.");
   }
   if (areFlat && !isAny)
   {

@@ -15,8 +15,8 @@
 class vtkDataObject;
 
 /// A dataset of images, of hyper tree grids and of curvilinear and unstructured grids, or AMR, that is distributed over
-/// the ranks, sorted into the parts that are shown. Keeps the data alive, without a copy. Methods documented as collective need every rank; a rank
-/// without data takes part. Failures are dsm::Error, the same on every rank.
+/// the ranks, sorted into the parts that are shown. Keeps the data alive, without a copy. Methods documented as
+/// collective need every rank; a rank without data takes part. Failures are dsm::Error, the same on every rank.
 class vtkDSMVolumeData
 {
 public:
@@ -41,9 +41,10 @@ public:
   static bool IsVolume(vtkDataObject* data);
 
   /// Collective. `data` is this rank's part: vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid,
-  /// vtkHyperTreeGrid, AMR, a composite dataset of any but AMR, whose other blocks are left out, or null; `looks` are of its blocks. Blocks that
-  /// continue one another are taken for one volume, where the arrays that `choose` names agree at the points that
-  /// the blocks have in common. `original`: the data with hidden blocks that `data` lack; may be null.
+  /// vtkHyperTreeGrid, AMR, a composite dataset of any but AMR, whose other blocks are left out, or null; `looks` are
+  /// of its blocks. Blocks that continue one another are taken for one volume, where the arrays that `choose` names
+  /// agree at the points that the blocks have in common. `original`: the data with hidden blocks that `data` lack; may
+  /// be null.
   vtkDSMVolumeData(std::shared_ptr<vtkDSMRankGroup> group, vtkDataObject* data,
     vtkDataObject* original, const Chooser& choose, const vtkDSMBlockLooks& looks);
   ~vtkDSMVolumeData();
