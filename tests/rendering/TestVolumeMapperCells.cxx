@@ -621,7 +621,6 @@ TEST_F(VolumeMapperCells, SlicesAndVolumes)
   opacity->AddPoint(0.6, 0.0);
   this->Volume->GetProperty()->SetColor(colors);
   this->Volume->GetProperty()->SetScalarOpacity(opacity);
-  this->Volume->GetProperty()->SetInterpolationTypeToLinear();
   this->Renderer->AddVolume(this->Volume);
   const auto cells = this->Draw(this->Mapper, grid);
   const auto structured = this->Draw(this->Mapper, MakeStructured());
