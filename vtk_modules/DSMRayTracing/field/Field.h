@@ -36,7 +36,7 @@ constexpr double ClearancePart = 1e-4;
 ///   mayHold, visit) const`: calls `visit(FieldSegment<Place>)` for the segments of a ray within [ray.Min,
 ///   ray.Max], in order, until it returns true; returns whether it did. May leave out segments of which
 ///   `mayHold(range)` is false for the range of their values (ValuePredicates.h), which may change during the walk.
-///   A segment depends on the ray alone.
+///   A segment depends on the ray alone. Where WalksTogether is true, it has WalkSearch::FindEach instead.
 /// - `Sampler<Store>`, for one worker of a store, which derives from PlainSampler, with `Sampler(Store&,
 ///   Store::Worker&)`, `RayMask FindValues(values, places, wanted, numbers) const`: NaN where there are no data;
 ///   returns the places that are in the field; `void FindGradients(values, places, wanted, gradients) const`: how
@@ -57,6 +57,7 @@ constexpr double ClearancePart = 1e-4;
 template <class FieldType>
 struct WalkedField
 {
+  static constexpr bool WalksTogether = false;
   ///@{
   /// What finds isosurfaces, takes rays through media, finds extrema and planes: LatticeSurfaces, LatticeMedia,
   /// VoxelExtrema and LatticeSections say what one that replaces it has to do.

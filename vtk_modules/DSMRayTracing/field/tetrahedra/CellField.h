@@ -45,6 +45,7 @@ constexpr double ClearancePart<CellField> = 0.5;
 /// see Field.h.
 struct CellField : WalkedField<CellField>
 {
+  static constexpr bool WalksTogether = true;
   using Values = bricks::CellValues;
   using Place = CellPlace;
   template <class Store>

@@ -2,21 +2,19 @@
 #ifndef rt_CellSurfaces_h
 #define rt_CellSurfaces_h
 
-#include "DSMBricks/accel/BrickHierarchy.h"
+#include "DSMBricks/cells/CellBrick.h"
 #include "DSMRayTracing/field/IsosurfaceHit.h"
 #include "DSMRayTracing/field/LevelSets.h"
 #include "DSMRayTracing/field/ValuePredicates.h"
 #include "DSMRayTracing/field/tetrahedra/CellCrossings.h"
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
+#include "DSMRayTracing/field/tetrahedra/CellKernel.h"
+#include "DSMRayTracing/field/tetrahedra/CellPacket.h"
 #include "DSMRayTracing/field/tetrahedra/CellSampler.h"
 #include "DSMRayTracing/look/SheetTransmittance.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
-#include "DSMRayTracing/ray/ChildrenInRange.h"
-#include "DSMRayTracing/ray/ChildrenOnRay.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
-#include "DSMRayTracing/ray/ShearedRay.h"
-#include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <glm/vec3.hpp>
 
@@ -25,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace rt
@@ -104,9 +103,11 @@ public:
   using Sets = LevelSets<CellField>;
   using Hit = IsosurfaceHit<CellPlace>;
 
-  CellSurfaces(Store& store, typename Store::Worker& worker)
+  CellSurfaces(Store& store, typename Store::Worker& worker,
+    const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
+    , Kernel(kernel)
     , Values(store, worker)
   {
   }
@@ -129,26 +130,24 @@ public:
   RayMask Intersect(
     const Sets& sets, ObjectBeam*, const Ray* rays, RayMask wanted, const Open& open) const
   {
+    Nearest nearest[MaxRays];
+    const RayMask found = this->FindNearest(sets, rays, wanted, nearest);
     Hit* hits[MaxRays];
     CellPlace places[MaxRays] = {};
-    RayMask opened = 0;
-    const RayMask found = FindRays(wanted,
+    const RayMask opened = FindRays(found,
       [&](int index)
       {
-        const Ray ray = rays[index]; // `open` may end it
-        Hit nearest;
-        if (!this->FindNearest(sets, ray, nearest))
+        const glm::dvec3 origin = rays[index].Origin; // `open` may end the ray
+        const glm::dvec3 direction = rays[index].Direction;
+        Hit& hit = nearest[index].At;
+        hits[index] = open(index, hit.T);
+        if (hits[index] == nullptr)
         {
           return false;
         }
-        hits[index] = open(index, nearest.T);
-        if (hits[index])
-        {
-          opened |= GetBit(index);
-          sets.Field.MovePlace(ray.Origin + nearest.T * ray.Direction, nearest.At);
-          places[index] = nearest.At;
-          *hits[index] = nearest;
-        }
+        sets.Field.MovePlace(origin + hit.T * direction, hit.At);
+        places[index] = hit.At;
+        *hits[index] = hit;
         return true;
       });
     glm::dvec3 gradients[MaxRays];
@@ -161,101 +160,148 @@ public:
 
   RayMask FindOccluded(const Sets& sets, const Ray* rays, RayMask wanted) const
   {
-    return FindRays(wanted,
-      [&](int index)
+    RayMask met = 0;
+    this->ForEachRoot(sets, rays, wanted,
+      [&](CellPacket& packet, const Root& root)
       {
-        bool isMet = false;
-        this->ForEachRoot(sets, rays[index],
-          [&](ShearedRay& ray, double, std::size_t, bool, std::uint32_t, const std::uint16_t*)
-          {
-            isMet = true;
-            ray.End();
-          });
-        return isMet;
+        met |= GetBit(packet.Rays[root.Lane]);
+        packet.End(root.Lane);
       });
+    return met;
   }
 
   RayMask Attenuate(const Sets& sets, const std::vector<glm::dvec3>& sheets, const Ray* rays,
     RayMask wanted, glm::dvec3* transmittances) const
   {
-    return FindRays(wanted,
-      [&](int index)
+    RayMask dark = 0;
+    this->ForEachRoot(sets, rays, wanted,
+      [&](CellPacket& packet, const Root& root)
       {
-        bool isDark = false;
-        this->ForEachRoot(sets, rays[index],
-          [&](ShearedRay& ray, double, std::size_t isovalue, bool, std::uint32_t,
-            const std::uint16_t*)
-          {
-            isDark = isDark || PassSheet(sheets[isovalue], 1, transmittances[index]);
-            if (isDark)
-            {
-              ray.End();
-            }
-          });
-        return isDark;
+        const int ray = packet.Rays[root.Lane];
+        if (PassSheet(sheets[root.Isovalue], 1, transmittances[ray]))
+        {
+          dark |= GetBit(ray);
+          packet.End(root.Lane);
+        }
       });
+    return dark;
   }
 
 private:
-  bool FindNearest(const Sets& sets, const Ray& ray, Hit& nearest) const
+  /// Where a ray crosses an isosurface in a tetrahedron.
+  struct Root
   {
-    bool isFound = false;
-    this->ForEachRoot(sets, ray,
-      [&](ShearedRay& there, double t, std::size_t isovalue, bool fromInside, std::uint32_t brick,
-        const std::uint16_t* corners)
+    int Lane; ///< of the packet
+    double T;
+    std::size_t Isovalue;
+    bool FromInside;
+    std::uint32_t Brick;
+    const std::uint16_t* Corners;
+    const bricks::CellBrick& Cells;
+  };
+
+  /// The nearest root so far. Of several at the same T the same one is kept in whatever order they are met.
+  struct Nearest
+  {
+    Hit At;
+    double Place[3]; ///< sums over the corners of the tetrahedron
+
+    void Set(const Root& root, const double place[3])
+    {
+      this->At.T = root.T;
+      this->At.Isovalue = static_cast<int>(root.Isovalue);
+      this->At.FromInside = root.FromInside;
+      this->At.At.Brick = root.Brick;
+      std::copy_n(root.Corners, 4, this->At.At.Corners);
+      std::copy_n(place, 3, this->Place);
+    }
+    bool IsBehind(const Root& root, const double place[3]) const
+    {
+      const int isovalue = static_cast<int>(root.Isovalue);
+      return std::tie(root.T, isovalue, root.FromInside, place[0], place[1], place[2]) <
+        std::tie(this->At.T, this->At.Isovalue, this->At.FromInside, this->Place[0],
+          this->Place[1], this->Place[2]);
+    }
+  };
+
+  RayMask FindNearest(
+    const Sets& sets, const Ray* rays, RayMask wanted, Nearest* nearest) const
+  {
+    RayMask found = 0;
+    this->ForEachRoot(sets, rays, wanted,
+      [&](CellPacket& packet, const Root& root)
       {
-        if (isFound && !(t < nearest.T))
+        const int ray = packet.Rays[root.Lane];
+        const RayMask bit = GetBit(ray);
+        double place[3] = {};
+        for (int corner = 0; corner < 4; ++corner)
         {
-          return;
+          const float* const point = root.Cells.GetPoint(root.Corners[corner]);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            place[axis] += static_cast<double>(point[axis]);
+          }
         }
-        isFound = true;
-        nearest.T = t;
-        nearest.Isovalue = static_cast<int>(isovalue);
-        nearest.FromInside = fromInside;
-        nearest.At.Brick = brick;
-        std::copy_n(corners, 4, nearest.At.Corners);
-        there.Shorten(t);
+        if ((found & bit) == 0 || nearest[ray].IsBehind(root, place))
+        {
+          found |= bit;
+          nearest[ray].Set(root, place);
+          packet.Shorten(root.Lane, root.T);
+        }
       });
-    return isFound;
+    return found;
   }
 
-  /// Calls `visit(ray, t, isovalue, fromInside, brick, corners)` for the crossings of isovalues on the ray, nearer bricks
-  /// and cells first, but in no strict order. It may shorten the ray.
+  /// Calls `visit(packet, root)` for the crossings of isovalues on rays, nearer bricks and cells first, but in no strict
+  /// order. It may shorten the packet's rays.
   template <class Visit>
-  void ForEachRoot(const Sets& sets, const Ray& ray, const Visit& visit) const
+  void ForEachRoot(const Sets& sets, const Ray* rays, RayMask wanted, const Visit& visit) const
   {
-    ShearedRay there;
-    if (sets.Isovalues.empty() || !SetRay(sets.Field, ray, there))
+    if (sets.Isovalues.empty())
     {
       return;
     }
     const bricks::CellValues& values = *sets.Field.Voxels;
     const IsovaluePredicate mayHold(sets.Isovalues);
-    const ChildrenInRange wanted(ChildrenOnRay(there.Boxes, there.BoxesEnd), mayHold);
-    TraverseWideBvh(values.Hierarchy.GetNodes(), wanted,
-      [&](std::uint32_t leaf)
+    ForEachPacket(sets.Field, rays, wanted,
+      [&](CellPacket& packet)
       {
-        const std::uint32_t brick = bricks::RangedBrickBvh::GetBrick(leaf);
-        const auto pins = this->Blocks.AcquirePair(
-          this->Self, *values.Cells->Segment, brick, *values.Segment, brick);
-        const bricks::CellBrick cells(pins.first.GetData());
-        const bricks::CellValueBrick numbers(pins.second.GetData());
-        const IsovalueFilter filter(numbers.GetHeader(), sets.Isovalues);
-        BrickCrossings(cells, numbers, there, filter)
-          .ForEach(
-            [&](const TetrahedronCrossing& crossing, const std::uint16_t* corners)
-            {
-              VisitRoots(sets.Isovalues, crossing, there.Triangles,
-                [&](double t, std::size_t isovalue, bool fromInside)
-                { visit(there, t, isovalue, fromInside, brick, corners); });
-            });
+        ForEachBrick(this->Kernel, packet, values.Hierarchy, mayHold,
+          [&](std::uint32_t brick, RayMask lanes, float)
+          { this->SearchBrick(sets, brick, packet, lanes, visit); });
       });
   }
 
-  /// Calls `visit(t, isovalue, fromInside)` for the isovalues that are crossed within the ray.
   template <class Visit>
-  static void VisitRoots(const std::vector<double>& isovalues, const TetrahedronCrossing& crossing,
-    const TriangleRay& ray, const Visit& visit)
+  void SearchBrick(const Sets& sets, std::uint32_t brick, CellPacket& packet, RayMask lanes,
+    const Visit& visit) const
+  {
+    const bricks::CellValues& values = *sets.Field.Voxels;
+    const auto pins =
+      this->Blocks.AcquirePair(this->Self, *values.Cells->Segment, brick, *values.Segment, brick);
+    const bricks::CellBrick cells(pins.first.GetData());
+    const bricks::CellValueBrick numbers(pins.second.GetData());
+    const IsovalueFilter filter(numbers.GetHeader(), sets.Isovalues);
+    BrickCrossings(this->Kernel, packet, cells, numbers, filter)
+      .ForEach(lanes,
+        [&](const CellKernel::Crossing& crossing, const std::uint16_t* corners)
+        {
+          const int lane = crossing.Lane;
+          VisitRoots(sets.Isovalues, crossing,
+            [&](double t, std::size_t isovalue, bool fromInside)
+            {
+              if (t >= packet.Min[lane] && t <= packet.Max[lane] && packet.IsOpen(lane))
+              {
+                visit(packet, Root{ lane, t, isovalue, fromInside, brick, corners, cells });
+              }
+            });
+        });
+  }
+
+  /// Calls `visit(t, isovalue, fromInside)` for the isovalues that are crossed.
+  template <class Visit>
+  static void VisitRoots(const std::vector<double>& isovalues,
+    const CellKernel::Crossing& crossing, const Visit& visit)
   {
     for (std::size_t number = 0; number < isovalues.size(); ++number)
     {
@@ -265,16 +311,14 @@ private:
         const double part = (isovalues[number] - crossing.First) / (crossing.Last - crossing.First);
         const double t = std::clamp(
           crossing.Enter + part * (crossing.Exit - crossing.Enter), crossing.Enter, crossing.Exit);
-        if (t >= ray.Min && t <= ray.Max)
-        {
-          visit(t, number, isInside);
-        }
+        visit(t, number, isInside);
       }
     }
   }
 
   Store& Blocks;
   typename Store::Worker& Self;
+  const CellKernel& Kernel;
   CellSampler<Store> Values;
 };
 

@@ -2,16 +2,14 @@
 #ifndef rt_CellWalk_h
 #define rt_CellWalk_h
 
-#include "DSMBricks/accel/BrickHierarchy.h"
 #include "DSMBricks/base/ValueRange.h"
 #include "DSMRayTracing/field/tetrahedra/CellCrossings.h"
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
+#include "DSMRayTracing/field/tetrahedra/CellKernel.h"
+#include "DSMRayTracing/field/tetrahedra/CellPacket.h"
 #include "DSMRayTracing/field/walk/FieldSegment.h"
-#include "DSMRayTracing/ray/ChildrenInRange.h"
-#include "DSMRayTracing/ray/ChildrenOnRay.h"
 #include "DSMRayTracing/ray/Ray.h"
-#include "DSMRayTracing/ray/ShearedRay.h"
-#include "DSMRayTracing/ray/WideBvhTraversal.h"
+#include "DSMRayTracing/ray/RayMask.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,45 +24,36 @@
 namespace rt
 {
 
-/// The tetrahedra that a ray passes in a CellField, in order. What a brick has of the ray is gathered, whatever lies
-/// between its cells, and sorted; it is visited when no brick is left that begins before it. So cells need no
+/// The tetrahedra that rays pass in a CellField, in order. What a brick has of the rays of a packet is gathered, whatever
+/// lies between its cells, and sorted; it is visited when no brick is left that begins before it. So cells need no
 /// neighbors, and the order does not depend on the bricks.
 template <class Store>
 class CellWalk
 {
 public:
-  CellWalk(Store& store, typename Store::Worker& worker)
+  CellWalk(Store& store, typename Store::Worker& worker,
+    const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
+    , Kernel(kernel)
   {
   }
 
-  template <class Predicate, class Visit>
-  bool Find(
-    const CellField& field, const Ray& ray, const Predicate& mayHold, const Visit& visit) const
+  /// See WalkSearch.
+  template <class GetPredicate, class Visit>
+  RayMask FindEach(const CellField& field, const Ray* rays, RayMask wanted,
+    const GetPredicate& getPredicate, const Visit& visit) const
   {
-    const bricks::CellValues& values = *field.Voxels;
-    ShearedRay there;
-    if (!SetRay(field, ray, there))
-    {
-      return false;
-    }
-    this->Entered.clear();
-    this->Waiting.clear();
-    this->FindBricks(values, there, mayHold);
-    for (const Entry& entry : this->Entered)
-    {
-      const double begin = there.StartT + entry.Enter / there.BoxesPerT;
-      if (this->VisitUpTo(begin, mayHold, visit))
+    RayMask found = 0;
+    ForEachPacket(field, rays, wanted,
+      [&](CellPacket& packet)
       {
-        return true;
-      }
-      if (mayHold(values.Hierarchy.GetRange(entry.Brick)))
-      {
-        this->Gather(values, entry.Brick, there, mayHold);
-      }
-    }
-    return this->VisitUpTo(std::numeric_limits<double>::infinity(), mayHold, visit);
+        const RayMask all = packet.GetOpenRays();
+        this->Walk(*field.Voxels, packet, getPredicate,
+          [&](int lane, const Segment& segment) { return visit(packet.Rays[lane], segment); });
+        found |= all & ~packet.GetOpenRays();
+      });
+    return found;
   }
 
 private:
@@ -82,38 +71,75 @@ private:
   };
   struct Entry
   {
-    float Enter;
+    double Begin; ///< T: no ray of the packet enters before
     std::uint32_t Brick;
+    RayMask Lanes;
   };
 
-  /// The bricks on the ray, in the order in which it enters them.
+  /// Takes the rays of a packet through the field. Ends those for which `visit(lane, segment)` returns true.
+  template <class GetPredicate, class Visit>
+  void Walk(const bricks::CellValues& values, CellPacket& packet, const GetPredicate& getPredicate,
+    const Visit& visit) const
+  {
+    this->FindBricks(values, packet, getPredicate(packet.GetOpenRays()));
+    for (const Entry& entry : this->Entered)
+    {
+      const auto mayHold = getPredicate(packet.GetOpenRays());
+      this->VisitUpTo(entry.Begin, packet, mayHold, visit);
+      if (mayHold(values.Hierarchy.GetRange(entry.Brick)))
+      {
+        this->Gather(values, entry, packet, mayHold);
+      }
+    }
+    this->VisitUpTo(std::numeric_limits<double>::infinity(), packet,
+      getPredicate(packet.GetOpenRays()), visit);
+  }
+
+  /// The bricks on the rays, in the order in which the first of them enters.
   template <class Predicate>
   void FindBricks(
-    const bricks::CellValues& values, const ShearedRay& ray, const Predicate& mayHold) const
+    const bricks::CellValues& values, const CellPacket& packet, const Predicate& mayHold) const
   {
-    const ChildrenInRange wanted(ChildrenOnRay(ray.Boxes, ray.BoxesEnd), mayHold);
-    TraverseWideBvh(values.Hierarchy.GetNodes(), wanted,
-      [&](std::uint32_t leaf, float enter) {
-        this->Entered.push_back({ enter, bricks::RangedBrickBvh::GetBrick(leaf) });
+    this->Entered.clear();
+    ForEachBrick(this->Kernel, packet, values.Hierarchy, mayHold,
+      [&](std::uint32_t brick, RayMask lanes, float enter)
+      {
+        double begin = std::numeric_limits<double>::infinity();
+        ForEachRay(lanes,
+          [&](int lane)
+          { begin = std::min(begin, packet.StartT[lane] + enter / packet.BoxesPerT[lane]); });
+        this->Entered.push_back({ begin, brick, lanes });
       });
     std::sort(this->Entered.begin(), this->Entered.end(),
       [](const Entry& one, const Entry& other)
-      { return std::tie(one.Enter, one.Brick) < std::tie(other.Enter, other.Brick); });
+      { return std::tie(one.Begin, one.Brick) < std::tie(other.Begin, other.Brick); });
   }
 
   template <class Predicate>
-  void Gather(const bricks::CellValues& values, std::uint32_t number, const ShearedRay& ray,
+  void Gather(const bricks::CellValues& values, const Entry& entry, const CellPacket& packet,
     const Predicate& mayHold) const
   {
+    if (this->Kernel.FindOpen(packet, entry.Lanes, 0.0f) == 0)
+    {
+      return;
+    }
+    const std::uint32_t number = entry.Brick;
     const auto pins =
       this->Blocks.AcquirePair(this->Self, *values.Cells->Segment, number, *values.Segment, number);
     const bricks::CellBrick brick(pins.first.GetData());
     const bricks::CellValueBrick numbers(pins.second.GetData());
     const auto gather = [&](const auto& filter)
     {
-      BrickCrossings(brick, numbers, ray, filter)
-        .ForEach([&](const TetrahedronCrossing& crossing, const std::uint16_t* corners)
-          { this->Add(crossing, ray.Triangles, number, corners); });
+      BrickCrossings(this->Kernel, packet, brick, numbers, filter)
+        .ForEach(entry.Lanes,
+          [&](const CellKernel::Crossing& crossing, const std::uint16_t* corners)
+          {
+            const int lane = crossing.Lane;
+            Part& part = this->Waiting[lane].emplace_back(
+              GetPart(crossing, packet.Min[lane], packet.Max[lane]));
+            part.Brick = number;
+            std::copy_n(corners, 4, part.Corners);
+          });
     };
     const bricks::CellValueHeader& header = numbers.GetHeader();
     if (HoldsAll(mayHold, { header.First, header.Last }))
@@ -147,23 +173,29 @@ private:
   {
   };
 
-  /// Keeps the part of a crossing that is within the ray.
-  void Add(const TetrahedronCrossing& crossing, const TriangleRay& ray, std::uint32_t brick,
-    const std::uint16_t* corners) const
+  /// The part of a crossing that is within a ray.
+  static Part GetPart(const CellKernel::Crossing& crossing, double min, double max)
   {
-    const double slope = crossing.Exit > crossing.Enter
-      ? (crossing.Last - crossing.First) / (crossing.Exit - crossing.Enter)
-      : 0.0;
-    Part& part = this->Waiting.emplace_back();
-    part.Enter = std::max(crossing.Enter, ray.Min);
-    part.Exit = std::min(crossing.Exit, ray.Max);
-    part.First = part.Enter == crossing.Enter
-      ? crossing.First
-      : crossing.First + slope * (part.Enter - crossing.Enter);
-    part.Last = part.Exit == crossing.Exit ? crossing.Last
-                                           : crossing.First + slope * (part.Exit - crossing.Enter);
-    part.Brick = brick;
-    std::copy_n(corners, 4, part.Corners);
+    Part part;
+    part.Enter = std::max(crossing.Enter, min);
+    part.Exit = std::min(crossing.Exit, max);
+    part.First = crossing.First;
+    part.Last = crossing.Last;
+    if (part.Enter != crossing.Enter || part.Exit != crossing.Exit)
+    {
+      const double slope = crossing.Exit > crossing.Enter
+        ? (crossing.Last - crossing.First) / (crossing.Exit - crossing.Enter)
+        : 0.0;
+      if (part.Enter != crossing.Enter)
+      {
+        part.First = crossing.First + slope * (part.Enter - crossing.Enter);
+      }
+      if (part.Exit != crossing.Exit)
+      {
+        part.Last = crossing.First + slope * (part.Exit - crossing.Enter);
+      }
+    }
+    return part;
   }
 
   static bricks::ValueRange RoundOut(double least, double most)
@@ -177,7 +209,8 @@ private:
 
   /// Visits the segments that begin before `end`, in order.
   template <class Predicate, class Visit>
-  bool VisitUpTo(double end, const Predicate& mayHold, const Visit& visit) const
+  void VisitUpTo(
+    double end, CellPacket& packet, const Predicate& mayHold, const Visit& visit) const
   {
     const auto isBefore = [](const Part& one, const Part& other)
     {
@@ -185,18 +218,25 @@ private:
         ? one.Enter < other.Enter
         : std::tie(one.Exit, one.First, one.Last) < std::tie(other.Exit, other.First, other.Last);
     };
-    const auto reached = std::partition(this->Waiting.begin(), this->Waiting.end(),
-      [end](const Part& part) { return part.Enter >= end; });
-    std::sort(reached, this->Waiting.end(), isBefore);
-    const bool isFound = std::any_of(reached, this->Waiting.end(),
-      [&](const Part& part)
+    for (int lane = 0; lane < packet.Count; ++lane)
+    {
+      std::vector<Part>& waiting = this->Waiting[lane];
+      const auto reached = std::partition(
+        waiting.begin(), waiting.end(), [end](const Part& part) { return part.Enter >= end; });
+      std::sort(reached, waiting.end(), isBefore);
+      const bool isDone = std::any_of(reached, waiting.end(),
+        [&](const Part& part)
+        {
+          const bricks::ValueRange range =
+            RoundOut(std::min(part.First, part.Last), std::max(part.First, part.Last));
+          return mayHold(range) && visit(lane, GetSegment(part, range));
+        });
+      waiting.erase(isDone ? waiting.begin() : reached, waiting.end());
+      if (isDone)
       {
-        const bricks::ValueRange range =
-          RoundOut(std::min(part.First, part.Last), std::max(part.First, part.Last));
-        return mayHold(range) && visit(GetSegment(part, range));
-      });
-    this->Waiting.erase(reached, this->Waiting.end());
-    return isFound;
+        packet.End(lane);
+      }
+    }
   }
 
   static Segment GetSegment(const Part& part, const bricks::ValueRange& range)
@@ -214,9 +254,10 @@ private:
 
   Store& Blocks;
   typename Store::Worker& Self;
+  const CellKernel& Kernel;
   // Storage that is kept from ray to ray.
   mutable std::vector<Entry> Entered;
-  mutable std::vector<Part> Waiting;
+  mutable std::vector<Part> Waiting[MaxRays];
 };
 
 } // namespace rt

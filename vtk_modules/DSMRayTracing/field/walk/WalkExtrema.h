@@ -8,6 +8,9 @@
 #include "DSMRayTracing/ray/RayExtrema.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace rt
 {
 
@@ -21,18 +24,51 @@ public:
   RayMask Find(const FieldType& field, double, ObjectBeam*, const Ray* rays, RayMask wanted,
     RayExtrema& extrema) const
   {
-    return FindRays(wanted,
-      [&](int ray)
+    int changes = 0;
+    return this->FindEach(
+      field, rays, wanted, [&](RayMask some) { return MayImprove(extrema, some, changes); },
+      [&](int ray, const Segment& segment)
       {
-        const auto mayImprove = [&](const bricks::ValueRange& range)
-        { return ExtremumPredicate(extrema.Sign, extrema.Value[ray])(range); };
-        return this->Way.Find(field, rays[ray], mayImprove,
-          [&](const Segment& segment) { return Improve(segment, ray, extrema); });
+        const double before = extrema.Value[ray];
+        const bool isMet = Improve(segment, ray, extrema);
+        changes += static_cast<int>(extrema.Value[ray] != before);
+        return isMet;
       });
   }
 
 private:
   using typename WalkSearch<FieldType, Store>::Segment;
+
+  /// Returns whether any value of a range is better than what one of some rays has found so far.
+  class MayImprove
+  {
+  public:
+    /// `changes`: how often any of the rays has found something. Both are kept by reference.
+    MayImprove(const RayExtrema& extrema, RayMask rays, const int& changes)
+      : Extrema(extrema)
+      , Rays(rays)
+      , Changes(changes)
+    {
+    }
+    bool operator()(const bricks::ValueRange& range) const
+    {
+      if (this->Known != this->Changes)
+      {
+        this->Known = this->Changes;
+        this->Least = std::numeric_limits<double>::infinity();
+        ForEachRay(this->Rays,
+          [&](int ray) { this->Least = std::min(this->Least, this->Extrema.Value[ray]); });
+      }
+      return ExtremumPredicate(this->Extrema.Sign, this->Least)(range);
+    }
+
+  private:
+    const RayExtrema& Extrema;
+    RayMask Rays;
+    const int& Changes;
+    mutable int Known = -1;
+    mutable double Least = 0.0; ///< at that number of changes
+  };
 
   /// Returns whether the ray has met its goal.
   static bool Improve(const Segment& segment, int ray, RayExtrema& extrema)

@@ -21,16 +21,13 @@ public:
   void Add(const FieldType& field, ObjectBeam*, const Ray* rays, RayMask wanted,
     RayIntegrals& integrals) const
   {
-    ForEachRay(wanted,
-      [&](int ray)
+    this->FindEach(
+      field, rays, wanted,
+      [](RayMask) { return [](const bricks::ValueRange&) { return true; }; },
+      [&](int ray, const Segment& segment)
       {
-        this->Way.Find(
-          field, rays[ray], [](const bricks::ValueRange&) { return true; },
-          [&](const Segment& segment)
-          {
-            integrals.Add(ray, segment.Enter, segment.Exit, segment.Values.GetMean());
-            return false;
-          });
+        integrals.Add(ray, segment.Enter, segment.Exit, segment.Values.GetMean());
+        return false;
       });
   }
 

@@ -28,12 +28,9 @@ public:
   RayMask March(const FieldType& field, const TransferFunction& function, ObjectBeam*,
     const Ray* rays, RayMask wanted, MediumLight& light) const
   {
-    return FindRays(wanted,
-      [&](int ray)
-      {
-        return this->Way.Find(field, rays[ray], TransferPredicate(function),
-          [&](const Segment& segment) { return Pass(segment, function, ray, light); });
-      });
+    return this->FindEach(
+      field, rays, wanted, [&](RayMask) { return TransferPredicate(function); },
+      [&](int ray, const Segment& segment) { return Pass(segment, function, ray, light); });
   }
 
 private:

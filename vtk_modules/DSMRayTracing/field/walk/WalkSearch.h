@@ -4,6 +4,8 @@
 
 #include "DSMRayTracing/field/walk/FieldSegment.h"
 #include "DSMRayTracing/object/ObjectBeam.h"
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
 
 #include <cstddef>
 #include <memory>
@@ -11,7 +13,7 @@
 namespace rt
 {
 
-/// Base of what finds something by a field's Walk: ray by ray, and without foresight.
+/// Base of what finds something by a field's Walk, without foresight.
 template <class FieldType, class Store>
 class WalkSearch
 {
@@ -37,6 +39,27 @@ public:
 
 protected:
   using Segment = FieldSegment<typename FieldType::Place>;
+
+  /// Walk::Find for the `wanted` of some rays: calls `visit(ray, segment)`. `getPredicate(some)`: mayHold for some of the
+  /// rays. Returns the rays for which a visit returned true.
+  template <class GetPredicate, class Visit>
+  RayMask FindEach(const FieldType& field, const Ray* rays, RayMask wanted,
+    const GetPredicate& getPredicate, const Visit& visit) const
+  {
+    if constexpr (FieldType::WalksTogether)
+    {
+      return this->Way.FindEach(field, rays, wanted, getPredicate, visit);
+    }
+    else
+    {
+      return FindRays(wanted,
+        [&](int ray)
+        {
+          return this->Way.Find(field, rays[ray], getPredicate(GetBit(ray)),
+            [&](const Segment& segment) { return visit(ray, segment); });
+        });
+    }
+  }
 
   typename FieldType::template Walk<Store> Way;
 };

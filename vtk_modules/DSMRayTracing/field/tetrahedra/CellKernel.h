@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_CellKernel_h
+#define rt_CellKernel_h
+
+#include "DSMBricks/accel/WideBvhNode.h"
+#include "DSMBricks/cells/CellBrick.h"
+#include "DSMBricks/cells/SplitCell.h"
+#include "DSMRayTracing/field/tetrahedra/CellPacket.h"
+#include "DSMRayTracing/ray/RayMask.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace rt
+{
+
+/// The steps of a packet through the bricks of a CellField, with the vector instructions of the processor. There is one
+/// for each kind of processor in the same binary, and one for rays one by one. All find the same bits, those of
+/// TetrahedronCrossing: numbers come from the same operations in the same order, none of them contracted, and beyond
+/// that vectors only tell which boxes and cells need not be looked at.
+///
+/// Pure; any thread.
+struct CellKernel
+{
+  /// The boxes of the children of a node: WideBvhNode.
+  struct Boxes
+  {
+    const float* Origin;
+    const std::uint8_t* Exponent;
+    const std::uint8_t* Bounds;
+  };
+  /// Lanes that meet children, and where the first of them enters, in units of BoxRay.
+  struct Children
+  {
+    RayMask Lanes[bricks::WideBvhWidth];
+    float Enter[bricks::WideBvhWidth];
+  };
+
+  /// A cell that is split into tetrahedra.
+  struct Cell
+  {
+    static constexpr int MostCorners = bricks::CellBrick::MostCorners;
+
+    int Corners;
+    float Points[3][MostCorners]; ///< along the axes of the packet
+    float Values[MostCorners];
+    int Parts;
+    std::uint8_t Tetrahedra[bricks::MostTetrahedra][4]; ///< numbers of corners
+  };
+  /// See TetrahedronCrossing.
+  struct Crossing
+  {
+    double Enter;
+    double Exit;
+    double First;
+    double Last;
+    std::uint8_t Lane;
+    std::uint8_t Part; ///< the tetrahedron
+  };
+  static constexpr int MostCrossings = bricks::MostTetrahedra * CellPacket::Size;
+
+  const char* Name;
+  int Width; ///< rays at once
+
+  /// Finds which of `lanes` meet the boxes of the `wanted` children (bits) of a node before they end. No others are
+  /// written.
+  void (*FindChildren)(const CellPacket& packet, RayMask lanes, const Boxes& boxes, unsigned wanted,
+    Children& met);
+
+  /// Returns those of `lanes` that end behind a place, in units of BoxRay.
+  RayMask (*FindOpen)(const CellPacket& packet, RayMask lanes, float enter);
+
+  /// Writes how those of `lanes` cross the tetrahedra of a cell between their Min and Max. Returns the number of
+  /// crossings, at most MostCrossings.
+  int (*FindCrossings)(
+    const CellPacket& packet, RayMask lanes, const Cell& cell, Crossing* crossings);
+
+  /// The fastest that this processor can run.
+  static const CellKernel& GetBest();
+  /// All that this processor can run, that of width 1 first. For tests: not while any thread traces.
+  static std::vector<CellKernel> GetAll();
+};
+
+} // namespace rt
+
+#endif

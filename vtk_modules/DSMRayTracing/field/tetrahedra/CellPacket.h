@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_CellPacket_h
+#define rt_CellPacket_h
+
+#include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
+#include "DSMRayTracing/field/tetrahedra/CellField.h"
+
+#include <cstddef>
+
+namespace rt
+{
+
+/// Rays of a batch through a CellField that move most along the same axis, in the same direction: ShearedRay, one array
+/// for each number. A lane has the numbers of one ray. What a ray finds does not depend on the others.
+struct CellPacket
+{
+  static constexpr int Size = MaxRays;
+
+  int Count = 0;
+  int Rays[Size]; ///< numbers of the rays in their batch
+
+  // TriangleRay:
+  int Axes[3];
+  alignas(64) double Origin[3][Size] = {}; ///< along Axes
+  alignas(64) double Shear[3][Size] = {};
+  alignas(64) double Min[Size] = {};
+  alignas(64) double Max[Size] = {};
+
+  // BoxRay:
+  alignas(64) float Start[3][Size] = {};
+  alignas(64) float Inverse[3][Size] = {};
+  alignas(64) float Margin[3][Size] = {};
+
+  // ShearedRay:
+  alignas(64) float FilterShear[2][Size] = {}; ///< along Axes
+  alignas(64) float BoxesEnd[Size] = {};
+  alignas(64) float Uncertainty[Size] = {};
+  alignas(64) double StartT[Size] = {};
+  alignas(64) double BoxesPerT[Size] = {};
+
+  /// Bits of all lanes that have a ray.
+  RayMask GetLanes() const { return ~RayMask{ 0 } >> (Size - this->Count); }
+
+  /// Adds the ray of a number. The first one decides on Axes.
+  void Add(int number, const ShearedRay& ray)
+  {
+    const int lane = this->Count++;
+    this->Rays[lane] = number;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Axes[axis] = ray.Triangles.Axes[axis];
+      this->Origin[axis][lane] = ray.Triangles.Origin[axis];
+      this->Shear[axis][lane] = ray.Triangles.Shear[axis];
+      this->Start[axis][lane] = ray.Boxes.Origin[axis];
+      this->Inverse[axis][lane] = ray.Boxes.Inverse[axis];
+      this->Margin[axis][lane] = ray.Boxes.Margin[axis];
+    }
+    this->FilterShear[0][lane] = static_cast<float>(ray.Triangles.Shear[0]);
+    this->FilterShear[1][lane] = static_cast<float>(ray.Triangles.Shear[1]);
+    this->Min[lane] = ray.Triangles.Min;
+    this->Max[lane] = ray.Triangles.Max;
+    this->BoxesEnd[lane] = ray.BoxesEnd;
+    this->Uncertainty[lane] = ray.Uncertainty;
+    this->StartT[lane] = ray.StartT;
+    this->BoxesPerT[lane] = ray.BoxesPerT;
+  }
+
+  /// Ends the ray of a lane at `t`: boxes behind it need not be visited.
+  void Shorten(int lane, double t)
+  {
+    this->Max[lane] = t;
+    this->BoxesEnd[lane] =
+      ShearedRay::GetBoxesT(t, this->StartT[lane], this->BoxesPerT[lane], this->Uncertainty[lane]);
+  }
+  ///@{
+  /// Nothing need be visited any more.
+  void End(int lane) { this->BoxesEnd[lane] = ShearedRay::NoBoxes; }
+  bool IsOpen(int lane) const { return this->BoxesEnd[lane] != ShearedRay::NoBoxes; }
+  /// Numbers of the rays, as bits.
+  RayMask GetOpenRays() const
+  {
+    RayMask open = 0;
+    for (int lane = 0; lane < this->Count; ++lane)
+    {
+      open |= GetBit(this->Rays[lane], this->IsOpen(lane));
+    }
+    return open;
+  }
+  ///@}
+};
+
+/// Calls `visit(packet)` for packets that have all of the `wanted` rays (world space) that may meet a field.
+template <class Visit>
+inline void ForEachPacket(
+  const CellField& field, const Ray* rays, RayMask wanted, const Visit& visit)
+{
+  if (field.Voxels->Hierarchy.IsEmpty())
+  {
+    return;
+  }
+  const bricks::CellBricks& cells = *field.Voxels->Cells;
+  const glm::dmat3 toIndex(field.WorldToIndex);
+  ShearedRay there[MaxRays];
+  RayMask left = FindRays(wanted,
+    [&](int number)
+    {
+      const Ray& ray = rays[number];
+      const glm::dvec3 origin = field.ToIndex(ray.Origin);
+      const glm::dvec3 direction = toIndex * ray.Direction;
+      return there[number].Set(
+        &origin.x, &direction.x, ray.Min, ray.Max, &cells.Lower.x, &cells.Upper.x);
+    });
+  while (left != 0)
+  {
+    const TriangleRay& first = there[GetLowest(left)].Triangles;
+    CellPacket packet;
+    const RayMask alike = FindRays(left,
+      [&](int number)
+      {
+        const TriangleRay& ray = there[number].Triangles;
+        return ray.Axes[2] == first.Axes[2] && ray.Axes[0] == first.Axes[0];
+      });
+    ForEachRay(alike, [&](int number) { packet.Add(number, there[number]); });
+    visit(packet);
+    left &= ~alike;
+  }
+}
+
+} // namespace rt
+
+#endif
