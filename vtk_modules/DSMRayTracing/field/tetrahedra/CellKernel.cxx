@@ -74,9 +74,9 @@ private:
       {
         const Vector inverse = hn::Load(tag, packet.Inverse[axis] + first);
         const Vector margin = hn::Load(tag, packet.Margin[axis] + first);
-        const Vector start =
-          hn::Mul(hn::Sub(hn::Set(tag, boxes.Origin[axis]), hn::Load(tag, packet.Start[axis] + first)),
-            inverse);
+        const Vector start = hn::Mul(
+          hn::Sub(hn::Set(tag, boxes.Origin[axis]), hn::Load(tag, packet.Start[axis] + first)),
+          inverse);
         step[axis] = hn::Mul(hn::Set(tag, scale[axis]), inverse);
         nearStart[axis] = hn::Sub(start, margin);
         farStart[axis] = hn::Add(start, margin);

@@ -64,8 +64,8 @@ struct CellKernel
 
   /// Finds which of `lanes` meet the boxes of the `wanted` children (bits) of a node before they end. No others are
   /// written.
-  void (*FindChildren)(const CellPacket& packet, RayMask lanes, const Boxes& boxes, unsigned wanted,
-    Children& met);
+  void (*FindChildren)(
+    const CellPacket& packet, RayMask lanes, const Boxes& boxes, unsigned wanted, Children& met);
 
   /// Returns those of `lanes` that end behind a place, in units of BoxRay.
   RayMask (*FindOpen)(const CellPacket& packet, RayMask lanes, float enter);

@@ -2,10 +2,10 @@
 #ifndef rt_CellPacket_h
 #define rt_CellPacket_h
 
+#include "DSMRayTracing/field/tetrahedra/CellField.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
 #include "DSMRayTracing/ray/ShearedRay.h"
-#include "DSMRayTracing/field/tetrahedra/CellField.h"
 
 #include <cstddef>
 

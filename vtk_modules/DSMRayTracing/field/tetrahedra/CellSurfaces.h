@@ -103,8 +103,8 @@ public:
   using Sets = LevelSets<CellField>;
   using Hit = IsosurfaceHit<CellPlace>;
 
-  CellSurfaces(Store& store, typename Store::Worker& worker,
-    const CellKernel& kernel = CellKernel::GetBest())
+  CellSurfaces(
+    Store& store, typename Store::Worker& worker, const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
     , Kernel(kernel)
@@ -219,13 +219,12 @@ private:
     {
       const int isovalue = static_cast<int>(root.Isovalue);
       return std::tie(root.T, isovalue, root.FromInside, place[0], place[1], place[2]) <
-        std::tie(this->At.T, this->At.Isovalue, this->At.FromInside, this->Place[0],
-          this->Place[1], this->Place[2]);
+        std::tie(this->At.T, this->At.Isovalue, this->At.FromInside, this->Place[0], this->Place[1],
+          this->Place[2]);
     }
   };
 
-  RayMask FindNearest(
-    const Sets& sets, const Ray* rays, RayMask wanted, Nearest* nearest) const
+  RayMask FindNearest(const Sets& sets, const Ray* rays, RayMask wanted, Nearest* nearest) const
   {
     RayMask found = 0;
     this->ForEachRoot(sets, rays, wanted,
@@ -300,8 +299,8 @@ private:
 
   /// Calls `visit(t, isovalue, fromInside)` for the isovalues that are crossed.
   template <class Visit>
-  static void VisitRoots(const std::vector<double>& isovalues,
-    const CellKernel::Crossing& crossing, const Visit& visit)
+  static void VisitRoots(
+    const std::vector<double>& isovalues, const CellKernel::Crossing& crossing, const Visit& visit)
   {
     for (std::size_t number = 0; number < isovalues.size(); ++number)
     {

@@ -31,8 +31,8 @@ template <class Store>
 class CellWalk
 {
 public:
-  CellWalk(Store& store, typename Store::Worker& worker,
-    const CellKernel& kernel = CellKernel::GetBest())
+  CellWalk(
+    Store& store, typename Store::Worker& worker, const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
     , Kernel(kernel)
@@ -91,8 +91,8 @@ private:
         this->Gather(values, entry, packet, mayHold);
       }
     }
-    this->VisitUpTo(std::numeric_limits<double>::infinity(), packet,
-      getPredicate(packet.GetOpenRays()), visit);
+    this->VisitUpTo(
+      std::numeric_limits<double>::infinity(), packet, getPredicate(packet.GetOpenRays()), visit);
   }
 
   /// The bricks on the rays, in the order in which the first of them enters.
@@ -209,8 +209,7 @@ private:
 
   /// Visits the segments that begin before `end`, in order.
   template <class Predicate, class Visit>
-  void VisitUpTo(
-    double end, CellPacket& packet, const Predicate& mayHold, const Visit& visit) const
+  void VisitUpTo(double end, CellPacket& packet, const Predicate& mayHold, const Visit& visit) const
   {
     const auto isBefore = [](const Part& one, const Part& other)
     {

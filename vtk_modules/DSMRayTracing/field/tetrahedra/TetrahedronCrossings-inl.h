@@ -105,10 +105,10 @@ private:
     {
       SeenPoint& point = seen[corner];
       point.Depth = hn::Sub(number(this->Cell.Points[2][corner]), origin[2]);
-      point.X = hn::Sub(hn::Sub(number(this->Cell.Points[0][corner]), origin[0]),
-        hn::Mul(shear[0], point.Depth));
-      point.Y = hn::Sub(hn::Sub(number(this->Cell.Points[1][corner]), origin[1]),
-        hn::Mul(shear[1], point.Depth));
+      point.X = hn::Sub(
+        hn::Sub(number(this->Cell.Points[0][corner]), origin[0]), hn::Mul(shear[0], point.Depth));
+      point.Y = hn::Sub(
+        hn::Sub(number(this->Cell.Points[1][corner]), origin[1]), hn::Mul(shear[1], point.Depth));
       point.Value = number(this->Cell.Values[corner]);
     }
     there &= this->FindAround(seen);
@@ -207,7 +207,11 @@ private:
     const auto interpolate = [&](Vector one, Vector two, Vector three)
     { return hn::Mul(Sum(hn::Mul(u, one), hn::Mul(v, two), hn::Mul(w, three)), inverse); };
     const Vector t = hn::Mul(interpolate(a.Depth, b.Depth, c.Depth), scale);
-    const Vector value = interpolate(a.Value, b.Value, c.Value);
+    const Vector least = Min(Min(a.Value, b.Value), c.Value);
+    const Vector most = Max(Max(a.Value, b.Value), c.Value);
+    Vector value = interpolate(a.Value, b.Value, c.Value);
+    value =
+      hn::IfThenElse(hn::Lt(value, least), least, hn::IfThenElse(hn::Lt(most, value), most, value));
     const Mask isFirst = hn::And(meets, hn::Lt(t, found.Enter));
     const Mask isLast = hn::And(meets, hn::Gt(t, found.Exit));
     found.Enter = hn::IfThenElse(isFirst, t, found.Enter);
