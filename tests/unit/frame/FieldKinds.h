@@ -135,7 +135,8 @@ struct Cells
   }
 
 private:
-  static constexpr std::int64_t Edge = 28;
+  /// Cells are as long as the quadratic field's detail.
+  static constexpr std::int64_t Edge = 32;
 
   /// From [0, 1]^3 to [-1, 1]^3, bent inside.
   static glm::dvec3 Move(const glm::dvec3& place)

@@ -145,7 +145,8 @@ std::array<const std::byte*, 2> ObjectStore::Internals::WaitForPair(
 void ObjectStore::Internals::WaitInTurn(
   Worker& worker, const BlockWant& one, const BlockWant& other, std::unique_lock<std::mutex>& lock)
 {
-  if (this->PairsWaiting == this->MostPairs)
+  // Others may take the turn while this worker waits for a slot.
+  while (this->PairsWaiting == this->MostPairs && this->Phase == FramePhase::Open)
   {
     WaitWithoutSlot(this->Current.Slots.get(), lock, worker.Woken,
       [this] { return this->PairsWaiting < this->MostPairs || this->Phase != FramePhase::Open; });
