@@ -31,6 +31,9 @@ glm::dvec4 GetSeen(const glm::dvec4& emission, double cellLength)
   return depth > 0.0 ? emission * (-std::expm1(-depth) / depth) : emission;
 }
 
+/// In bins; FindFineBehavior.
+constexpr double LeastWay = 1e-6;
+
 double GetLargest(const glm::dvec4& numbers)
 {
   return std::max({ numbers.x, numbers.y, numbers.z, numbers.w });
@@ -140,6 +143,7 @@ TransferFunction::TransferFunction(const std::vector<FunctionSample>& samples, d
     this->SeenBefore.push_back(this->SeenBefore.back() + (part.Steepness.Extinction > 0.0 ? 1 : 0));
   }
   this->SetBins();
+  this->SetWorst();
   this->SetTable();
 }
 
@@ -221,6 +225,21 @@ void TransferFunction::SetBins()
     }
     this->Largest.push_back(std::move(next));
   }
+}
+
+void TransferFunction::SetWorst()
+{
+  double jumps = 0.0;
+  for (const Behavior& bin : this->Largest.front())
+  {
+    this->Worst = GetLarger(this->Worst, bin);
+  }
+  for (const Part& part : this->Parts)
+  {
+    this->Worst = GetLarger(this->Worst, part.Steepness);
+    jumps += part.Jump;
+  }
+  this->Worst.Change += jumps / LeastWay;
 }
 
 void TransferFunction::SetTable()
@@ -373,8 +392,7 @@ TransferFunction::Behavior TransferFunction::FindFineBehavior(double begin, doub
     }
   }
   // A jump is passed at one place of the way between the two.
-  constexpr double least = 1e-6;
-  largest.Change += jumps / std::max(end - begin, least);
+  largest.Change += jumps / std::max(end - begin, LeastWay);
   return largest;
 }
 

@@ -92,6 +92,8 @@ public:
   /// Values that cross a whole bin cross it in a small part of their way, so it counts how much the
   /// function changes in the bin; for values that stay within, how steep it is.
   Behavior FindBehavior(double begin, double end) const;
+  /// No range behaves worse.
+  const Behavior& GetWorstBehavior() const { return this->Worst; }
 
   /// Returns whether any value from `first` to `last` is visible.
   bool IsSeen(double first, double last) const
@@ -136,6 +138,7 @@ private:
   static Behavior GetSteepness(
     const glm::dvec4& begin, const glm::dvec4& end, double width, double cellLength);
   void SetBins();
+  void SetWorst();
   void SetTable();
   /// The last part that begins at or before a place; that of a place that is not a number is part 0.
   std::size_t FindPart(double place) const;
@@ -158,6 +161,7 @@ private:
   std::vector<int> SeenBins;   ///< bins before each that are seen; one more at the end
   /// Largest Behavior of 1, 2, 4 ... bins that follow one another, from each bin on.
   std::vector<std::vector<Behavior>> Largest;
+  Behavior Worst;
   std::uint64_t Digest;
 };
 

@@ -20,6 +20,8 @@ namespace rt
 
 class ObjectDigest;
 template <class Store>
+class CellMedia;
+template <class Store>
 class CellSampler;
 template <class Store>
 class CellSurfaces;
@@ -54,6 +56,8 @@ struct CellField : WalkedField<CellField>
   using Sampler = CellSampler<Store>;
   template <class Store>
   using Surfaces = CellSurfaces<Store>;
+  template <class Store>
+  using Media = CellMedia<Store>;
 
   /// From the space of the bricks to world; affine, invertible.
   glm::dmat4 IndexToWorld{ 1.0 };

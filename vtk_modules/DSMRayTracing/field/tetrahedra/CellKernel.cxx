@@ -10,6 +10,7 @@
 
 #include "DSMRayTracing/base/MaskBits-inl.h"
 #include "DSMRayTracing/base/VectorKernel.h"
+#include "DSMRayTracing/field/tetrahedra/CellParts-inl.h"
 #include "DSMRayTracing/field/tetrahedra/TetrahedronCrossings-inl.h"
 
 #include <hwy/highway.h>
@@ -32,7 +33,7 @@ class CellSteps
 public:
   static CellKernel Create(const char* name)
   {
-    return { name, Width, &FindChildren, &FindOpen, &FindCrossings };
+    return { name, Width, &FindChildren, &FindOpen, &FindCrossings, &Integrate };
   }
 
 private:
@@ -165,7 +166,14 @@ private:
     return near & lanes;
   }
 
-  using Crossings = TetrahedronCrossings<hn::CappedTag<double, (hn::MaxLanes(F()) + 1) / 2>>;
+  static RayMask Integrate(const CellPacket& packet, const CellKernel::Runs& runs,
+    const TransferFunction& function, MediumLight& light)
+  {
+    return CellParts<Doubles>(packet, runs, function, light).Integrate();
+  }
+
+  using Doubles = hn::CappedTag<double, (hn::MaxLanes(F()) + 1) / 2>;
+  using Crossings = TetrahedronCrossings<Doubles>;
 };
 
 RT_CREATE_KERNEL(CellKernel, CellSteps, float, 16)

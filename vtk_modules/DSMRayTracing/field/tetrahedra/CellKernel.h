@@ -6,6 +6,8 @@
 #include "DSMBricks/cells/CellBrick.h"
 #include "DSMBricks/cells/SplitCell.h"
 #include "DSMRayTracing/field/tetrahedra/CellPacket.h"
+#include "DSMRayTracing/look/TransferFunction.h"
+#include "DSMRayTracing/ray/MediumLight.h"
 #include "DSMRayTracing/ray/RayMask.h"
 
 #include <cstdint>
@@ -57,6 +59,20 @@ struct CellKernel
     std::uint8_t Lane;
     std::uint8_t Part; ///< the tetrahedron
   };
+  /// The way of a ray through a tetrahedron, between its Min and Max: as Crossing.
+  struct Part
+  {
+    double Enter;
+    double Exit;
+    double First;
+    double Last;
+  };
+  /// For each lane, parts in the order in which the ray passes them.
+  struct Runs
+  {
+    const Part* First[CellPacket::Size];
+    int Count[CellPacket::Size];
+  };
   static constexpr int MostCrossings = bricks::MostTetrahedra * CellPacket::Size;
 
   const char* Name;
@@ -74,6 +90,10 @@ struct CellKernel
   /// crossings, at most MostCrossings.
   int (*FindCrossings)(
     const CellPacket& packet, RayMask lanes, const Cell& cell, Crossing* crossings);
+
+  /// Takes rays of a medium through parts, and adds what comes of it. Returns the lanes that are dark then.
+  RayMask (*Integrate)(const CellPacket& packet, const Runs& runs, const TransferFunction& function,
+    MediumLight& light);
 
   /// The fastest that this processor can run.
   static const CellKernel& GetBest();

@@ -4,11 +4,11 @@
 
 // All that CellField names.
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
+#include "DSMRayTracing/field/tetrahedra/CellMedia.h"
 #include "DSMRayTracing/field/tetrahedra/CellSampler.h"
 #include "DSMRayTracing/field/tetrahedra/CellSurfaces.h"
 #include "DSMRayTracing/field/tetrahedra/CellWalk.h"
 #include "DSMRayTracing/field/walk/WalkExtrema.h"
-#include "DSMRayTracing/field/walk/WalkMedia.h"
 #include "DSMRayTracing/field/walk/WalkSections.h"
 
 #endif

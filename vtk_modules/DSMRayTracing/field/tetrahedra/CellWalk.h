@@ -31,8 +31,8 @@ template <class Store>
 class CellWalk
 {
 public:
-  CellWalk(
-    Store& store, typename Store::Worker& worker, const CellKernel& kernel = CellKernel::GetBest())
+  CellWalk(Store& store, typename Store::Worker& worker,
+    const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
     , Kernel(kernel)
@@ -44,31 +44,44 @@ public:
   RayMask FindEach(const CellField& field, const Ray* rays, RayMask wanted,
     const GetPredicate& getPredicate, const Visit& visit) const
   {
-    RayMask found = 0;
+    return this->PassEach(field, rays, wanted, getPredicate,
+      [&](const CellPacket& packet, const CellKernel::Runs& runs, const auto& mayHold)
+      {
+        return FindRays(packet.GetLanes(),
+          [&](int lane)
+          {
+            const Part* const first = runs.First[lane];
+            return std::any_of(first, first + runs.Count[lane],
+              [&](const Part& part)
+              {
+                const Segment segment = GetSegment(part);
+                return mayHold(segment.Range) && visit(packet.Rays[lane], segment);
+              });
+          });
+      });
+  }
+
+  /// Takes rays through the field in packets. Calls `pass(packet, runs, mayHold)` for what they meet next; it returns the
+  /// lanes that end there. `getPredicate`: as for FindEach. Returns the rays that have ended.
+  template <class GetPredicate, class Pass>
+  RayMask PassEach(const CellField& field, const Ray* rays, RayMask wanted,
+    const GetPredicate& getPredicate, const Pass& pass) const
+  {
+    RayMask ended = 0;
     ForEachPacket(field, rays, wanted,
       [&](CellPacket& packet)
       {
         const RayMask all = packet.GetOpenRays();
-        this->Walk(*field.Voxels, packet, getPredicate,
-          [&](int lane, const Segment& segment) { return visit(packet.Rays[lane], segment); });
-        found |= all & ~packet.GetOpenRays();
+        this->Walk(*field.Voxels, packet, getPredicate, pass);
+        ended |= all & ~packet.GetOpenRays();
       });
-    return found;
+    return ended;
   }
 
 private:
   using Segment = FieldSegment<CellPlace>;
+  using Part = CellKernel::Part;
 
-  /// What is gathered of a tetrahedron.
-  struct Part
-  {
-    double Enter;
-    double Exit;
-    double First;
-    double Last;
-    std::uint32_t Brick;
-    std::uint16_t Corners[4];
-  };
   struct Entry
   {
     double Begin; ///< T: no ray of the packet enters before
@@ -76,23 +89,22 @@ private:
     RayMask Lanes;
   };
 
-  /// Takes the rays of a packet through the field. Ends those for which `visit(lane, segment)` returns true.
-  template <class GetPredicate, class Visit>
+  template <class GetPredicate, class Pass>
   void Walk(const bricks::CellValues& values, CellPacket& packet, const GetPredicate& getPredicate,
-    const Visit& visit) const
+    const Pass& pass) const
   {
     this->FindBricks(values, packet, getPredicate(packet.GetOpenRays()));
     for (const Entry& entry : this->Entered)
     {
       const auto mayHold = getPredicate(packet.GetOpenRays());
-      this->VisitUpTo(entry.Begin, packet, mayHold, visit);
+      this->PassUpTo(entry.Begin, packet, mayHold, pass);
       if (mayHold(values.Hierarchy.GetRange(entry.Brick)))
       {
         this->Gather(values, entry, packet, mayHold);
       }
     }
-    this->VisitUpTo(
-      std::numeric_limits<double>::infinity(), packet, getPredicate(packet.GetOpenRays()), visit);
+    this->PassUpTo(std::numeric_limits<double>::infinity(), packet,
+      getPredicate(packet.GetOpenRays()), pass);
   }
 
   /// The bricks on the rays, in the order in which the first of them enters.
@@ -132,13 +144,10 @@ private:
     {
       BrickCrossings(this->Kernel, packet, brick, numbers, filter)
         .ForEach(entry.Lanes,
-          [&](const CellKernel::Crossing& crossing, const std::uint16_t* corners)
+          [&](const CellKernel::Crossing& crossing, const std::uint16_t*)
           {
             const int lane = crossing.Lane;
-            Part& part = this->Waiting[lane].emplace_back(
-              GetPart(crossing, packet.Min[lane], packet.Max[lane]));
-            part.Brick = number;
-            std::copy_n(corners, 4, part.Corners);
+            this->Waiting[lane].push_back(GetPart(crossing, packet.Min[lane], packet.Max[lane]));
           });
     };
     const bricks::CellValueHeader& header = numbers.GetHeader();
@@ -207,47 +216,54 @@ private:
       last < most ? std::nextafter(last, infinity) : last };
   }
 
-  /// Visits the segments that begin before `end`, in order.
-  template <class Predicate, class Visit>
-  void VisitUpTo(double end, CellPacket& packet, const Predicate& mayHold, const Visit& visit) const
+  /// Passes the parts that begin before `end`.
+  template <class Predicate, class Pass>
+  void PassUpTo(double end, CellPacket& packet, const Predicate& mayHold, const Pass& pass) const
   {
-    const auto isBefore = [](const Part& one, const Part& other)
-    {
-      return one.Enter != other.Enter
-        ? one.Enter < other.Enter
-        : std::tie(one.Exit, one.First, one.Last) < std::tie(other.Exit, other.First, other.Last);
-    };
+    CellKernel::Runs runs;
+    int most = 0;
     for (int lane = 0; lane < packet.Count; ++lane)
     {
       std::vector<Part>& waiting = this->Waiting[lane];
       const auto reached = std::partition(
         waiting.begin(), waiting.end(), [end](const Part& part) { return part.Enter >= end; });
-      std::sort(reached, waiting.end(), isBefore);
-      const bool isDone = std::any_of(reached, waiting.end(),
-        [&](const Part& part)
-        {
-          const bricks::ValueRange range =
-            RoundOut(std::min(part.First, part.Last), std::max(part.First, part.Last));
-          return mayHold(range) && visit(lane, GetSegment(part, range));
-        });
-      waiting.erase(isDone ? waiting.begin() : reached, waiting.end());
-      if (isDone)
+      std::sort(reached, waiting.end(), &IsBefore);
+      runs.Count[lane] = static_cast<int>(waiting.end() - reached);
+      runs.First[lane] = waiting.data() + (reached - waiting.begin());
+      most = std::max(most, runs.Count[lane]);
+    }
+    if (most == 0)
+    {
+      return;
+    }
+    const RayMask ended = pass(packet, runs, mayHold);
+    for (int lane = 0; lane < packet.Count; ++lane)
+    {
+      std::vector<Part>& waiting = this->Waiting[lane];
+      waiting.resize(waiting.size() - static_cast<std::size_t>(runs.Count[lane]));
+      if ((ended >> lane & 1) != 0)
       {
+        waiting.clear();
         packet.End(lane);
       }
     }
   }
+  static bool IsBefore(const Part& one, const Part& other)
+  {
+    return one.Enter != other.Enter
+      ? one.Enter < other.Enter
+      : std::tie(one.Exit, one.First, one.Last) < std::tie(other.Exit, other.First, other.Last);
+  }
 
-  static Segment GetSegment(const Part& part, const bricks::ValueRange& range)
+  static Segment GetSegment(const Part& part)
   {
     Segment segment;
     segment.Enter = part.Enter;
     segment.Exit = part.Exit;
     segment.Values = { { part.First, part.Last - part.First, 0.0, 0.0 } };
     segment.Last = part.Last;
-    segment.Range = range;
-    segment.At.Brick = part.Brick;
-    std::copy_n(part.Corners, 4, segment.At.Corners);
+    segment.Range = RoundOut(std::min(part.First, part.Last), std::max(part.First, part.Last));
+    segment.At.Brick = CellPlace::NoBrick;
     return segment;
   }
 
