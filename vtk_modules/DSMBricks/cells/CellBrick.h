@@ -98,7 +98,15 @@ public:
       std::size_t(first) * header.Corners;
     for (int cell = 0; cell < count; ++cell, from += header.Corners)
     {
-      std::memcpy(corners[cell], from, header.Corners * sizeof(std::uint16_t));
+      // Copies of a constant size need no call.
+      if (header.Corners == MostCorners)
+      {
+        std::memcpy(corners[cell], from, MostCorners * sizeof(std::uint16_t));
+      }
+      else
+      {
+        std::memcpy(corners[cell], from, 4 * sizeof(std::uint16_t));
+      }
     }
     return count;
   }

@@ -7,6 +7,7 @@
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
 #include "DSMRayTracing/field/tetrahedra/CellKernel.h"
 #include "DSMRayTracing/field/tetrahedra/CellPacket.h"
+#include "DSMRayTracing/field/tetrahedra/SortedParts.h"
 #include "DSMRayTracing/field/walk/FieldSegment.h"
 #include "DSMRayTracing/ray/Ray.h"
 #include "DSMRayTracing/ray/RayMask.h"
@@ -147,7 +148,7 @@ private:
           [&](const CellKernel::Crossing& crossing, const std::uint16_t*)
           {
             const int lane = crossing.Lane;
-            this->Waiting[lane].push_back(GetPart(crossing, packet.Min[lane], packet.Max[lane]));
+            this->Waiting[lane].Insert(GetPart(crossing, packet.Min[lane], packet.Max[lane]));
           });
     };
     const bricks::CellValueHeader& header = numbers.GetHeader();
@@ -224,12 +225,8 @@ private:
     int most = 0;
     for (int lane = 0; lane < packet.Count; ++lane)
     {
-      std::vector<Part>& waiting = this->Waiting[lane];
-      const auto reached = std::partition(
-        waiting.begin(), waiting.end(), [end](const Part& part) { return part.Enter >= end; });
-      std::sort(reached, waiting.end(), &IsBefore);
-      runs.Count[lane] = static_cast<int>(waiting.end() - reached);
-      runs.First[lane] = waiting.data() + (reached - waiting.begin());
+      runs.First[lane] = this->Waiting[lane].GetFirst();
+      runs.Count[lane] = this->Waiting[lane].CountBefore(end);
       most = std::max(most, runs.Count[lane]);
     }
     if (most == 0)
@@ -239,20 +236,14 @@ private:
     const RayMask ended = pass(packet, runs, mayHold);
     for (int lane = 0; lane < packet.Count; ++lane)
     {
-      std::vector<Part>& waiting = this->Waiting[lane];
-      waiting.resize(waiting.size() - static_cast<std::size_t>(runs.Count[lane]));
-      if ((ended >> lane & 1) != 0)
-      {
-        waiting.clear();
-        packet.End(lane);
-      }
+      this->Waiting[lane].Remove(runs.Count[lane]);
     }
-  }
-  static bool IsBefore(const Part& one, const Part& other)
-  {
-    return one.Enter != other.Enter
-      ? one.Enter < other.Enter
-      : std::tie(one.Exit, one.First, one.Last) < std::tie(other.Exit, other.First, other.Last);
+    ForEachRay(ended,
+      [&](int lane)
+      {
+        this->Waiting[lane].Clear();
+        packet.End(lane);
+      });
   }
 
   static Segment GetSegment(const Part& part)
@@ -272,7 +263,7 @@ private:
   const CellKernel& Kernel;
   // Storage that is kept from ray to ray.
   mutable std::vector<Entry> Entered;
-  mutable std::vector<Part> Waiting[MaxRays];
+  mutable SortedParts Waiting[MaxRays];
 };
 
 } // namespace rt
