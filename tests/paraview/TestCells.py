@@ -47,7 +47,8 @@ def show_contour(source, name):
     points = source
     if name == "OfCells":
         # ParaView's means at points know no cells of other ranks, unless there are ghost cells.
-        points = simple.CellDatatoPointData(Input=simple.GhostCellsGenerator(Input=source) if get_ranks() > 1 else source)
+        points = simple.GhostCellsGenerator(Input=source) if get_ranks() > 1 else source
+        points = simple.CellDatatoPointData(Input=points)
     contour = simple.Contour(Input=points, ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0], ComputeScalars=0)
     show_surface(contour, view)
     pixels = render(view)

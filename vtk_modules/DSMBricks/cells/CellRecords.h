@@ -28,7 +28,7 @@ struct CornerRecord
 class CellRecordReader final : public RecordReader
 {
 public:
-  /// `corners`: of each cell, on all ranks: 4 or 8. Of cells with fewer the last ones are repeated.
+  /// `corners`: of each cell, on all ranks: 4 or 8. Cells with fewer repeat their last ones.
   CellRecordReader(const CellSource& source, int corners, int rank);
 
   RecordKind GetKind() const override;

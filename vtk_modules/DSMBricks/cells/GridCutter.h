@@ -19,8 +19,8 @@ struct GridBrick
   std::vector<std::uint32_t> Points;
 };
 
-/// Cuts this rank's structured grids into bricks of up to 16 cells on each axis; those without shown cells are left out.
-/// Cells with a corner that is not finite are not shown. `threads`: the calling one included.
+/// Cuts this rank's structured grids into bricks of up to 16 cells on each axis; those without shown cells are left
+/// out. Cells with a corner that is not finite are not shown. `threads`: the calling one included.
 std::vector<GridBrick> CutGrids(const CellSource& source, const BrickSpace& space, int threads);
 
 } // namespace bricks

@@ -119,8 +119,8 @@ struct GridBrickSummary
   std::uint32_t Bytes;
 };
 
-/// Collective. Numbers the bricks of grids behind the sorted ones, rank by rank. Returns the number of this rank's first
-/// one.
+/// Collective. Numbers the bricks of grids behind the sorted ones, rank by rank. Returns the number of this rank's
+/// first one.
 dsm::BlockId AddGridBricks(std::string_view what, const std::vector<GridBrick>& own,
   SortedBricks& bricks, dsm::Messenger& messenger)
 {
@@ -162,8 +162,8 @@ dsm::BlockId AddGridBricks(std::string_view what, const std::vector<GridBrick>& 
   return first;
 }
 
-/// Yields what the owners of bricks know of the points of each rank. Block n is what rank n gets: the number of a brick,
-/// how many of its points follow, their numbers in the brick, and those in the rank's source.
+/// Yields what the owners of bricks know of the points of each rank. Block n is what rank n gets: the number of a
+/// brick, how many of its points follow, their numbers in the brick, and those in the rank's source.
 class RouteSource final : public dsm::FragmentSource
 {
 public:

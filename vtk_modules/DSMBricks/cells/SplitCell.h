@@ -40,8 +40,8 @@ inline bool SortCorners(const Number* places, std::uint8_t corners[4])
 
 /// Splits a hexahedron into six tetrahedra, so that the diagonal of each face goes through the first of the face's
 /// points: cells on both sides of a face split it alike (Dompierre et al. 1999, "How to subdivide pyramids, prisms and
-/// hexahedra into tetrahedra"). `isBefore(one, other)`: whether a corner comes before another in an order of all points,
-/// which need only be the same in both cells; corners at the same point are equal. Corners are in VTK's order.
+/// hexahedra into tetrahedra"). `isBefore(one, other)`: whether a corner comes before another in an order of all
+/// points, which need only be the same in both cells; corners at the same point are equal. Corners are in VTK's order.
 /// Tetrahedra are flat where two of their corners are the same point.
 template <class IsBefore>
 inline void SplitHexahedronBy(const IsBefore& isBefore, std::uint8_t tetrahedra[MostTetrahedra][4])

@@ -3,8 +3,8 @@
 #define rt_MeshInstance_h
 
 #include "DSMBricks/layout/TriangleMesh.h"
-#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

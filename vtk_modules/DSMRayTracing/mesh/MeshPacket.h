@@ -3,10 +3,10 @@
 #define rt_MeshPacket_h
 
 #include "DSMRayTracing/mesh/MeshInstance.h"
-#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
 #include "DSMRayTracing/ray/RayPacket.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 
 namespace rt
 {
@@ -71,8 +71,8 @@ struct MeshPacket
   void Shorten(int index, double t)
   {
     this->Max[index] = t;
-    this->BoxesEnd[index] =
-      ShearedRay::GetBoxesT(t, this->StartT[index], this->BoxesPerT[index], this->Uncertainty[index]);
+    this->BoxesEnd[index] = ShearedRay::GetBoxesT(
+      t, this->StartT[index], this->BoxesPerT[index], this->Uncertainty[index]);
   }
 };
 

@@ -4,10 +4,10 @@
 
 #include "DSMBricks/layout/TriangleBrick.h"
 #include "DSMRayTracing/mesh/MeshInstance.h"
-#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
 #include "DSMRayTracing/ray/ChildrenOnRay.h"
+#include "DSMRayTracing/ray/ShearedRay.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 #ifndef rt_ShearedRay_h
 #define rt_ShearedRay_h
 
-#include "DSMRayTracing/ray/TriangleRay.h"
 #include "DSMRayTracing/ray/BoxRay.h"
+#include "DSMRayTracing/ray/TriangleRay.h"
 
 #include <algorithm>
 #include <cmath>

@@ -22,8 +22,8 @@ constexpr int LargestWideBvhStack =
 /// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
 ///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)`, or `visit(reference, enter)`, may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
-/// but the leaf's.
+/// `visit(reference)`, or `visit(reference, enter)`, may change its answers, so that fewer are wanted. Kernels under it
+/// must be inlined: no call but the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {

@@ -75,8 +75,8 @@ inline void TraverseTogether(const CellKernel& kernel, const CellPacket& packet,
   }
 }
 
-/// Visits the bricks of a field that a packet meets and whose range of values `mayHold`: as TraverseTogether, with their
-/// numbers.
+/// Visits the bricks of a field that a packet meets and whose range of values `mayHold`: as TraverseTogether, with
+/// their numbers.
 template <class Predicate, class Visit>
 inline void ForEachBrick(const CellKernel& kernel, const CellPacket& packet,
   const bricks::RangedBrickBvh& hierarchy, const Predicate& mayHold, const Visit& visit)
@@ -103,7 +103,7 @@ class BrickCrossings
 public:
   using Crossing = CellKernel::Crossing;
 
-  /// `filter` tells what values are looked for:
+  /// `filter` decides which values are looked for:
   /// - `FindChildren(ranges)`: bit i set when child i may have such, by the node's ranges (CellValueBrick);
   /// - `MayHold(first, last)`: whether values between these may be such.
   /// All is kept by reference.

@@ -22,8 +22,8 @@ template <class Store>
 class CellMedia : public WalkSearch<CellField, Store>
 {
 public:
-  CellMedia(Store& store, typename Store::Worker& worker,
-    const CellKernel& kernel = CellKernel::GetBest())
+  CellMedia(
+    Store& store, typename Store::Worker& worker, const CellKernel& kernel = CellKernel::GetBest())
     : WalkSearch<CellField, Store>(store, worker)
     , Kernel(kernel)
   {

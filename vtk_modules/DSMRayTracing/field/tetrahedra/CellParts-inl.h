@@ -130,9 +130,8 @@ private:
     {
       own[lane] = (there >> lane & 1) != 0 ? lane : __builtin_ctz(there);
     }
-    const auto load = [&](double Part::*number) {
-      return SetLanes<double, Width>([&](int lane) { return this->Next[own[lane]]->*number; });
-    };
+    const auto load = [&](double Part::*number)
+    { return SetLanes<double, Width>([&](int lane) { return this->Next[own[lane]]->*number; }); };
     const Vector enter = load(&Part::Enter);
     const Vector exit = load(&Part::Exit);
     const Vector origin = hn::Load(tag, this->Origin);

@@ -20,8 +20,8 @@
 namespace rt
 {
 
-/// Values and gradients at places in a CellField. Values are linear in tetrahedra; gradients are linear between those at
-/// the points, or, where the bricks have none, that of the tetrahedron.
+/// Values and gradients at places in a CellField. Values are linear in tetrahedra; gradients are linear between those
+/// at the points, or, where the bricks have none, that of the tetrahedron.
 template <class Store>
 class CellSampler : public PlainSampler<CellField, CellSampler<Store>>
 {

@@ -200,7 +200,7 @@ private:
     const bricks::CellBrick& Cells;
   };
 
-  /// The nearest root so far. Of several at the same T the same one is kept in whatever order they are met.
+  /// The nearest root so far. Which of several at the same T is kept does not depend on their order.
   struct Nearest
   {
     Hit At;
@@ -251,8 +251,8 @@ private:
     return found;
   }
 
-  /// Calls `visit(packet, root)` for the crossings of isovalues on rays, nearer bricks and cells first, but in no strict
-  /// order. It may shorten the packet's rays.
+  /// Calls `visit(packet, root)` for the crossings of isovalues on rays, nearer bricks and cells first, but in no
+  /// strict order. It may shorten the packet's rays.
   template <class Visit>
   void ForEachRoot(const Sets& sets, const Ray* rays, RayMask wanted, const Visit& visit) const
   {

@@ -25,15 +25,15 @@
 namespace rt
 {
 
-/// The tetrahedra that rays pass in a CellField, in order. What a brick has of the rays of a packet is gathered, whatever
-/// lies between its cells, and sorted; it is visited when no brick is left that begins before it. So cells need no
-/// neighbors, and the order does not depend on the bricks.
+/// The tetrahedra that rays pass in a CellField, in order. What a brick has of the rays of a packet is gathered,
+/// whatever lies between its cells, and sorted; it is visited when no brick is left that begins before it. So cells
+/// need no neighbors, and the order does not depend on the bricks.
 template <class Store>
 class CellWalk
 {
 public:
-  CellWalk(Store& store, typename Store::Worker& worker,
-    const CellKernel& kernel = CellKernel::GetBest())
+  CellWalk(
+    Store& store, typename Store::Worker& worker, const CellKernel& kernel = CellKernel::GetBest())
     : Blocks(store)
     , Self(worker)
     , Kernel(kernel)
@@ -62,8 +62,8 @@ public:
       });
   }
 
-  /// Takes rays through the field in packets. Calls `pass(packet, runs, mayHold)` for what they meet next; it returns the
-  /// lanes that end there. `getPredicate`: as for FindEach. Returns the rays that have ended.
+  /// Takes rays through the field in packets. Calls `pass(packet, runs, mayHold)` for what they meet next; it returns
+  /// the lanes that end there. `getPredicate`: as for FindEach. Returns the rays that have ended.
   template <class GetPredicate, class Pass>
   RayMask PassEach(const CellField& field, const Ray* rays, RayMask wanted,
     const GetPredicate& getPredicate, const Pass& pass) const
@@ -104,8 +104,8 @@ private:
         this->Gather(values, entry, packet, mayHold);
       }
     }
-    this->PassUpTo(std::numeric_limits<double>::infinity(), packet,
-      getPredicate(packet.GetOpenRays()), pass);
+    this->PassUpTo(
+      std::numeric_limits<double>::infinity(), packet, getPredicate(packet.GetOpenRays()), pass);
   }
 
   /// The bricks on the rays, in the order in which the first of them enters.

@@ -10,8 +10,8 @@
 namespace rt
 {
 
-/// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T times
-/// Shear[2].
+/// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T
+/// times Shear[2].
 struct SeenPoint
 {
   double X;

@@ -22,8 +22,7 @@ public:
     RayIntegrals& integrals) const
   {
     this->FindEach(
-      field, rays, wanted,
-      [](RayMask) { return [](const bricks::ValueRange&) { return true; }; },
+      field, rays, wanted, [](RayMask) { return [](const bricks::ValueRange&) { return true; }; },
       [&](int ray, const Segment& segment)
       {
         integrals.Add(ray, segment.Enter, segment.Exit, segment.Values.GetMean());

@@ -40,8 +40,8 @@ public:
 protected:
   using Segment = FieldSegment<typename FieldType::Place>;
 
-  /// Walk::Find for the `wanted` of some rays: calls `visit(ray, segment)`. `getPredicate(some)`: mayHold for some of the
-  /// rays. Returns the rays for which a visit returned true.
+  /// Walk::Find for the `wanted` of some rays: calls `visit(ray, segment)`. `getPredicate(some)`: mayHold for some of
+  /// the rays. Returns the rays for which a visit returned true.
   template <class GetPredicate, class Visit>
   RayMask FindEach(const FieldType& field, const Ray* rays, RayMask wanted,
     const GetPredicate& getPredicate, const Visit& visit) const
