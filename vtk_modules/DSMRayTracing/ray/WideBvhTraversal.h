@@ -4,7 +4,6 @@
 
 #include "DSMBricks/accel/WideBvhNode.h"
 
-#include <type_traits>
 #include <utility>
 
 namespace rt
@@ -22,8 +21,8 @@ constexpr int LargestWideBvhStack =
 /// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
 ///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)`, or `visit(reference, enter)`, may change its answers, so that fewer are wanted. Kernels under it
-/// must be inlined: no call but the leaf's.
+/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call but
+/// the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {
@@ -36,19 +35,11 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
   Entry stack[LargestWideBvhStack];
   int size = 0;
   Reference child = 0;
-  float place = 0.0f;
   while (true)
   {
     if (child & Node::LeafBit)
     {
-      if constexpr (std::is_invocable_v<Visit, Reference, float>)
-      {
-        visit(child, place);
-      }
-      else
-      {
-        visit(child);
-      }
+      visit(child);
     }
     else
     {
@@ -77,7 +68,6 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
           stack[top] = entry;
         }
         child = nearest.Child;
-        place = nearest.Enter;
         continue;
       }
     }
@@ -90,7 +80,6 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
       --size;
     } while (!wanted.IsOpen(stack[size].Enter));
     child = stack[size].Child;
-    place = stack[size].Enter;
   }
 }
 

@@ -103,7 +103,7 @@ class BrickCrossings
 public:
   using Crossing = CellKernel::Crossing;
 
-  /// `filter` decides which values are looked for:
+  /// `filter` selects values:
   /// - `FindChildren(ranges)`: bit i set when child i may have such, by the node's ranges (CellValueBrick);
   /// - `MayHold(first, last)`: whether values between these may be such.
   /// All is kept by reference.

@@ -16,12 +16,12 @@
 namespace rt
 {
 
-/// The steps of a packet through the bricks of a CellField, with the vector instructions of the processor. There is one
-/// for each kind of processor in the same binary, and one for rays one by one. All find the same bits, those of
-/// TetrahedronCrossing: numbers come from the same operations in the same order, none of them contracted, and beyond
-/// that vectors only tell which boxes and cells need not be looked at.
+/// The steps of a packet through the bricks of a CellField, with the vector instructions of the processor. There is
+/// one for each kind of processor in the same binary, and one for rays one by one. All find the same bits: numbers
+/// come from the same operations in the same order, none of them contracted, and beyond that vectors only decide which
+/// boxes and cells need not be looked at.
 ///
-/// Pure; any thread.
+/// Pure, but for the sums of Integrate; any thread.
 struct CellKernel
 {
   /// The boxes of the children of a node: WideBvhNode.
@@ -49,7 +49,7 @@ struct CellKernel
     int Parts;
     std::uint8_t Tetrahedra[bricks::MostTetrahedra][4]; ///< numbers of corners
   };
-  /// See TetrahedronCrossing.
+  /// Where a ray enters and leaves a tetrahedron (T), and the values there.
   struct Crossing
   {
     double Enter;

@@ -13,7 +13,7 @@ namespace rt
 {
 
 /// Rays of a batch through a CellField that move most along the same axis, in the same direction: ShearedRay, one array
-/// for each number. A lane has the numbers of one ray. The results of a ray do not depend on the others.
+/// for each number. A lane has the numbers of one ray. The result of a ray does not depend on the others.
 struct CellPacket
 {
   static constexpr int Size = MaxRays;

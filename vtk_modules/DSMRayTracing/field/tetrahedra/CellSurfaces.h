@@ -19,6 +19,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -173,18 +174,31 @@ public:
   RayMask Attenuate(const Sets& sets, const std::vector<glm::dvec3>& sheets, const Ray* rays,
     RayMask wanted, glm::dvec3* transmittances) const
   {
-    RayMask dark = 0;
+    // The product does not depend on the order in which surfaces are met.
+    std::vector<std::array<int, MaxRays>> crossings(sheets.size());
+    glm::dvec3 left[MaxRays];
+    ForEachRay(wanted, [&](int ray) { left[ray] = transmittances[ray]; });
     this->ForEachRoot(sets, rays, wanted,
       [&](CellPacket& packet, const Root& root)
       {
         const int ray = packet.Rays[root.Lane];
-        if (PassSheet(sheets[root.Isovalue], 1, transmittances[ray]))
+        ++crossings[root.Isovalue][static_cast<std::size_t>(ray)];
+        if (PassSheet(sheets[root.Isovalue], 1, left[ray]))
         {
-          dark |= GetBit(ray);
           packet.End(root.Lane);
         }
       });
-    return dark;
+    return FindRays(wanted,
+      [&](int ray)
+      {
+        bool isDark = false;
+        for (std::size_t sheet = 0; sheet < sheets.size(); ++sheet)
+        {
+          const int count = crossings[sheet][static_cast<std::size_t>(ray)];
+          isDark = PassSheet(sheets[sheet], count, transmittances[ray]);
+        }
+        return isDark;
+      });
   }
 
 private:
@@ -200,7 +214,7 @@ private:
     const bricks::CellBrick& Cells;
   };
 
-  /// The nearest root so far. Which of several at the same T is kept does not depend on their order.
+  /// The nearest root so far. Several at the same T are told apart, in whatever order they are met.
   struct Nearest
   {
     Hit At;

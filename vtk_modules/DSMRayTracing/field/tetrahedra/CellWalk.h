@@ -25,9 +25,9 @@
 namespace rt
 {
 
-/// The tetrahedra that rays pass in a CellField, in order. What a brick has of the rays of a packet is gathered,
-/// whatever lies between its cells, and sorted; it is visited when no brick is left that begins before it. So cells
-/// need no neighbors, and the order does not depend on the bricks.
+/// The tetrahedra that rays pass in a CellField, in order. The crossings of a packet with a brick are gathered,
+/// whatever lies between its cells, and sorted; they are passed when no brick is left that begins before them. So
+/// cells need no neighbors, and the order does not depend on the bricks.
 template <class Store>
 class CellWalk
 {
@@ -62,8 +62,8 @@ public:
       });
   }
 
-  /// Takes rays through the field in packets. Calls `pass(packet, runs, mayHold)` for what they meet next; it returns
-  /// the lanes that end there. `getPredicate`: as for FindEach. Returns the rays that have ended.
+  /// Takes rays through the field in packets. Calls `pass(packet, runs, mayHold)` for the parts that they meet next; it
+  /// returns the lanes that end there. `getPredicate`: as for FindEach. Returns the rays that have ended.
   template <class GetPredicate, class Pass>
   RayMask PassEach(const CellField& field, const Ray* rays, RayMask wanted,
     const GetPredicate& getPredicate, const Pass& pass) const
@@ -94,6 +94,9 @@ private:
   void Walk(const bricks::CellValues& values, CellPacket& packet, const GetPredicate& getPredicate,
     const Pass& pass) const
   {
+    // A walk before may have ended by an exception.
+    std::for_each(
+      this->Waiting, this->Waiting + packet.Count, [](SortedParts& parts) { parts.Clear(); });
     this->FindBricks(values, packet, getPredicate(packet.GetOpenRays()));
     for (const Entry& entry : this->Entered)
     {

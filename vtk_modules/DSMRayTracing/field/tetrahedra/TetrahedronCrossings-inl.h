@@ -24,7 +24,10 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// TetrahedronCrossing for vectors of rays: the same operations in the same order. D: vectors of doubles.
+/// Finds where rays cross the faces of tetrahedra, and the values there. Two tetrahedra that share a face get the same
+/// bits there, in whatever order they name its points: each number comes from operations that do not depend on the
+/// order, or of which only the sign does. As for triangles (TriangleIntersector.h), a ray does not pass between
+/// tetrahedra that share a face, an edge or a corner. D: vectors of doubles, a ray in each lane.
 template <class D>
 class TetrahedronCrossings
 {
@@ -63,6 +66,8 @@ private:
   using NumberTag = hn::RebindToSigned<D>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
+  /// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T
+  /// times Shear[2].
   struct SeenPoint
   {
     Vector X;
@@ -70,6 +75,7 @@ private:
     Vector Depth;
     Vector Value;
   };
+  /// Where rays enter and leave a tetrahedron, and the values there.
   struct Found
   {
     Vector Enter;
@@ -153,7 +159,7 @@ private:
       hn::And(hn::Le(hn::Max(least[0], least[1]), zero), hn::Ge(hn::Min(most[0], most[1]), zero)));
   }
 
-  /// TetrahedronCrossing::Find. Finds no face of any but `rays`.
+  /// Finds no face of any but `rays`.
   static HWY_INLINE void FindFaces(Vector scale, const SeenPoint& a, const SeenPoint& b,
     const SeenPoint& c, const SeenPoint& d, Mask rays, Found& found)
   {
@@ -181,6 +187,7 @@ private:
     return hn::Sub(hn::Mul(one.X, other.Y), hn::Mul(one.Y, other.X));
   }
 
+  /// Does not depend on the order of the numbers. If all are negated, so is the sum.
   static HWY_INLINE Vector Sum(Vector a, Vector b, Vector c)
   {
     const Vector less = Min(a, b);

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef rt_TetrahedronCrossing_h
-#define rt_TetrahedronCrossing_h
+#ifndef tests_TetrahedronCrossing_h
+#define tests_TetrahedronCrossing_h
 
 #include "DSMRayTracing/ray/TriangleRay.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace rt
-{
-
-/// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T
-/// times Shear[2].
+/// rt::TetrahedronCrossings for one ray and one tetrahedron: what vectors have to find.
 struct SeenPoint
 {
   double X;
@@ -19,7 +15,7 @@ struct SeenPoint
   double Depth;
   double Value;
 
-  void Set(const TriangleRay& ray, const float* point, float value)
+  void Set(const rt::TriangleRay& ray, const float* point, float value)
   {
     this->Depth = point[ray.Axes[2]] - ray.Origin[2];
     this->X = (point[ray.Axes[0]] - ray.Origin[0]) - ray.Shear[0] * this->Depth;
@@ -28,10 +24,7 @@ struct SeenPoint
   }
 };
 
-/// Where a ray crosses the faces of a tetrahedron, and the values there. What is found at a face has the same bits in
-/// both tetrahedra that share it, in whatever order they name its points: each number comes from operations that do not
-/// depend on the order, or of which only the sign does. As for triangles (TriangleIntersector.h), a ray does not pass
-/// between tetrahedra that share a face, an edge or a corner.
+/// Where a ray crosses the faces of a tetrahedron, and the values there.
 class TetrahedronCrossing
 {
 public:
@@ -41,7 +34,7 @@ public:
   double Last = 0.0;                                      ///< at Exit
 
   /// Once. False where the ray misses the tetrahedron.
-  bool Find(const TriangleRay& ray, const SeenPoint& a, const SeenPoint& b, const SeenPoint& c,
+  bool Find(const rt::TriangleRay& ray, const SeenPoint& a, const SeenPoint& b, const SeenPoint& c,
     const SeenPoint& d)
   {
     const double ab = Cross(a, b);
@@ -72,8 +65,8 @@ private:
     return (std::min(less, c) + std::max(more, c)) + middle;
   }
 
-  void AddFace(const TriangleRay& ray, const SeenPoint& a, const SeenPoint& b, const SeenPoint& c,
-    double u, double v, double w)
+  void AddFace(const rt::TriangleRay& ray, const SeenPoint& a, const SeenPoint& b,
+    const SeenPoint& c, double u, double v, double w)
   {
     if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0))
     {
@@ -104,7 +97,5 @@ private:
 
   int Faces = 0;
 };
-
-} // namespace rt
 
 #endif
