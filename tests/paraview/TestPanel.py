@@ -35,7 +35,9 @@ ISOSURFACES = ["DSMShow", "DSMIsoArray", "DSMIsoArrayAutomatic", "DSMIsoComponen
                "DSMMaskArray", "DSMMaskRange", "DSMMaskValues", "DSMIsoValue", "DSMIsoValueAutomatic",
                "DSMValueRange", "DSMIsoValues"]
 # Of surfaces, the panel shows DSMShow, and what depends on it, only where there are blocks that have isosurfaces.
-for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True), (simple.Cone(), ISOSURFACES, False)):
+# Slices of grids of cells are by a plane.
+for source, own, is_pictured in ((simple.Wavelet(), ISOSURFACES + SLICES, True),
+                                 (simple.Cone(), ISOSURFACES + ["DSMSlicePlane"], False)):
     names = list_panel(simple.Show(source, view))
     first = names.index("Representation")
     expected = own + LIGHT
