@@ -15,6 +15,8 @@ import started
 ROUNDS = 10
 LARGEST_RATIO = 1.15  # of processor times to draw; those of the same thing twice differ as much on a busy machine
 LARGEST_GROWTH = 5.5 * 1024  # KiB
+# Rank 0 is the client, too: its displays of surfaces and grids have the properties of volumes and slices.
+LARGEST_OF_CLIENT = 16.0 * 1024
 
 
 def list_ours(view):
@@ -105,7 +107,8 @@ without, view = views[2], views[4]
 check(held[0].size == get_ranks(), f"{get_ranks()} ranks are seen: {held[0]} KiB")
 # What loading takes, and two views; less what that took before. Both, as freed memory comes back now or then.
 growth = (held[4] - held[2]) - (held[2] - held[0])
-check(growth.max() < LARGEST_GROWTH, f"with the plugin, the ranks hold {growth} KiB more")
+check(growth[1:].max(initial=0) < LARGEST_GROWTH and growth[0] < LARGEST_OF_CLIENT,
+      f"with the plugin, the ranks hold {growth} KiB more")
 check(list_ours(view) == [], f"a view of surfaces has nothing of ours: {list_ours(view)}")
 for draw in (draw_still, draw_moving):
     for _ in range(3):  # until once it was left alone
