@@ -200,21 +200,11 @@ void CellExchange::Run(dsm::Messenger& messenger, std::string_view what,
   const std::vector<Piece>& pieces, const std::map<std::size_t, std::shared_ptr<CellAverages>>& own)
 {
   std::optional<TransferList> transfers;
-  std::optional<dsm::BlockDirectory> directory;
-  messenger.RunTogether(what,
-    [&]
-    {
-      transfers.emplace(pieces, own);
-      const int ranks = messenger.GetSize();
-      directory.emplace(std::vector<std::uint32_t>(static_cast<std::size_t>(ranks), 0),
-        dsm::RoundRobinAssigner(ranks));
-    });
+  messenger.RunTogether(what, [&] { transfers.emplace(pieces, own); });
   LayerSource source(transfers->Get(), pieces, own);
   const auto absorb = [&](dsm::BlockId, const std::byte* bytes, std::size_t count)
   { Absorb(own, bytes, count); };
-  const dsm::FirstFailure failure =
-    dsm::FragmentStream::Run(messenger, *directory, source, absorb, {});
-  messenger.RunTogether(what, [&] { failure.Throw(); });
+  dsm::FragmentStream::RunToRanks(what, messenger, source, absorb);
 }
 
 } // namespace bricks

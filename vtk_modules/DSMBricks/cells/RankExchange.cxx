@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 
 namespace bricks
 {
@@ -80,14 +79,6 @@ private:
 
 void RankExchange::Run(std::string_view what, dsm::Messenger& messenger) const
 {
-  std::optional<dsm::BlockDirectory> directory;
-  messenger.RunTogether(what,
-    [&]
-    {
-      const int ranks = messenger.GetSize();
-      directory.emplace(std::vector<std::uint32_t>(static_cast<std::size_t>(ranks), 0),
-        dsm::RoundRobinAssigner(ranks));
-    });
   RankRecordSource source(*this, messenger.GetRank());
   const auto absorb = [&](dsm::BlockId, const std::byte* bytes, std::size_t count)
   {
@@ -102,9 +93,7 @@ void RankExchange::Run(std::string_view what, dsm::Messenger& messenger) const
     this->ReadRecords(static_cast<int>(header.From), header.First,
       (count - sizeof(header)) / this->RecordBytes, bytes + sizeof(header));
   };
-  const dsm::FirstFailure failure =
-    dsm::FragmentStream::Run(messenger, *directory, source, absorb, {});
-  messenger.RunTogether(what, [&] { failure.Throw(); });
+  dsm::FragmentStream::RunToRanks(what, messenger, source, absorb);
 }
 
 } // namespace bricks

@@ -5,8 +5,11 @@
 #include "DSMCore/publish/BlockStream.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dsm
 {
@@ -65,6 +68,21 @@ FirstFailure FragmentStream::Run(Messenger& messenger, const BlockDirectory& dir
     return true;
   };
   return stream.Run(feed);
+}
+
+void FragmentStream::RunToRanks(
+  std::string_view what, Messenger& messenger, FragmentSource& source, Absorb absorb)
+{
+  std::optional<BlockDirectory> directory;
+  messenger.RunTogether(what,
+    [&]
+    {
+      const int ranks = messenger.GetSize();
+      directory.emplace(
+        std::vector<std::uint32_t>(static_cast<std::size_t>(ranks), 0), RoundRobinAssigner(ranks));
+    });
+  const FirstFailure failure = Run(messenger, *directory, source, absorb, {});
+  messenger.RunTogether(what, [&] { failure.Throw(); });
 }
 
 } // namespace dsm

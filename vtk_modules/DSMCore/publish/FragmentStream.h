@@ -9,6 +9,7 @@
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
+#include <string_view>
 
 namespace dsm
 {
@@ -25,6 +26,10 @@ public:
   /// Returns this rank's failure; the caller has to let the ranks agree.
   static FirstFailure Run(Messenger& messenger, const BlockDirectory& directory,
     FragmentSource& source, Absorb absorb, FunctionRef<void(double)> progress);
+
+  /// Collective: moves fragments to ranks; block n is what rank n gets. Throws the same Error on every rank.
+  static void RunToRanks(
+    std::string_view what, Messenger& messenger, FragmentSource& source, Absorb absorb);
 };
 
 } // namespace dsm

@@ -21,8 +21,8 @@ constexpr int LargestWideBvhStack =
 /// - unsigned FindChildren(node, float enter[WideBvhWidth]): bit i set when child i may have what is looked for;
 ///   `enter` tells where;
 /// - bool IsOpen(float enter): whether a child there still may, when its turn comes.
-/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call but
-/// the leaf's.
+/// `visit(reference)` may change its answers, so that fewer are wanted. Kernels under it must be inlined: no call
+/// but the leaf's.
 template <class Node, class Wanted, class Visit>
 inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& visit)
 {
@@ -60,12 +60,12 @@ inline void TraverseWideBvh(const Node* nodes, const Wanted& wanted, Visit&& vis
           {
             std::swap(entry, nearest);
           }
-          int top = size++;
-          for (; top > bottom && stack[top - 1].Enter < entry.Enter; --top)
+          int place = size++;
+          for (; place > bottom && stack[place - 1].Enter < entry.Enter; --place)
           {
-            stack[top] = stack[top - 1];
+            stack[place] = stack[place - 1];
           }
-          stack[top] = entry;
+          stack[place] = entry;
         }
         child = nearest.Child;
         continue;
