@@ -19,8 +19,8 @@ template <class FieldType, class Store>
 class WalkSurfaces;
 
 /// Where rays that leave a field's surface begin, as a part of GetFinestLength (SurfacePoint::Clearance): roots are
-/// found to 1e-7 of the way through a cell. A kind whose
-/// surfaces are facets, but are shaded as if they were round, has more: else facets shade one another.
+/// found to 1e-7 of the way through a cell. A kind whose surfaces are facets, but are shaded as if they were round, has
+/// more: else facets shade one another.
 template <class FieldType>
 constexpr double ClearancePart = 1e-4;
 

@@ -18,12 +18,13 @@
 namespace rt
 {
 
-/// Base of the fields whose values are in bricks of voxels: values, and where they are in the world.
-template <class ValuesType>
+/// Base of the fields whose values are in bricks: values, and where they are in the world. The space of bricks of cells
+/// is called index space here, too.
+template <class ValuesType, class PlaceType = LatticePlace>
 struct IndexedField
 {
   using Values = ValuesType;
-  using Place = LatticePlace;
+  using Place = PlaceType;
 
   /// Point index space (sample (i,j,k) at (i,j,k) of the lattice, or of level 0) to world; affine, invertible.
   /// Where the values have Planes, it is grid space instead of index space, here and in what is called so below.
@@ -35,12 +36,17 @@ struct IndexedField
     this->IndexToWorld = matrix;
     this->WorldToIndex = glm::inverse(matrix);
   }
+  /// A point in world space, in index space.
+  glm::dvec3 ToIndex(const glm::dvec3& point) const
+  {
+    return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
+  }
   std::shared_ptr<const Values> Voxels;
   const Values& GetValues() const { return *this->Voxels; }
 
   static const dsm::BlockSegment* GetSegment(const Values& values) { return values.Segment.get(); }
   /// The brick of a place.
-  ObjectTracer::Brick FindBrick(const LatticePlace& place) const
+  ObjectTracer::Brick FindBrick(const Place& place) const
   {
     return { this->Voxels->Segment.get(), place.Brick };
   }

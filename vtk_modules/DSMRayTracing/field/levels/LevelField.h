@@ -46,11 +46,6 @@ struct LevelField : IndexedField<bricks::LevelVoxels>
   }
   /// The cell of level 0 that tells which block of BlockLooks has a place.
   bricks::Index3 GetBlockCell(const LatticePlace& place) const;
-  /// A point in world space, in the index space of level 0.
-  glm::dvec3 ToIndex(const glm::dvec3& point) const
-  {
-    return glm::dmat3(this->WorldToIndex) * (point - glm::dvec3(this->IndexToWorld[3]));
-  }
   /// Finds a point (world space) within the bounds of all cells, in the index space of level 0; a point on their
   /// border is within. Its cell is not known yet.
   bool FindPlace(const glm::dvec3& point, LatticePlace& place) const;

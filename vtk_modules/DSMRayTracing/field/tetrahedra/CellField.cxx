@@ -3,12 +3,10 @@
 
 #include "DSMRayTracing/object/ObjectDigest.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace rt
@@ -16,12 +14,6 @@ namespace rt
 
 namespace
 {
-
-/// Lengths of the axes of the space of bricks where a matrix leads to.
-glm::dvec3 GetLengths(const glm::dmat3& axes)
-{
-  return { glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]) };
-}
 
 bool Contains(const bricks::BoundingBox& box, const glm::dvec3& point)
 {
@@ -58,17 +50,9 @@ bool CellField::FindPlace(const glm::dvec3& point, CellPlace& place) const
     glm::all(glm::lessThanEqual(place.Point, space.Upper + slack));
 }
 
-glm::dvec3 CellField::GetNormal(const glm::dvec3& gradient, const glm::dvec3& rayDirection) const
-{
-  const glm::dvec3 growth = glm::transpose(glm::dmat3(this->WorldToIndex)) * gradient;
-  const double length = glm::length(growth);
-  return length > 0.0 && std::isfinite(length) ? growth / -length : -glm::normalize(rayDirection);
-}
-
 double CellField::GetFinestLength(const glm::dmat3& worldToSpace) const
 {
-  const glm::dvec3 lengths = GetLengths(worldToSpace * glm::dmat3(this->IndexToWorld));
-  return std::min({ lengths.x, lengths.y, lengths.z }) * this->Voxels->Cells->ShortestEdge;
+  return this->GetShortestEdge(worldToSpace, glm::dvec3(1.0)) * this->Voxels->Cells->ShortestEdge;
 }
 
 double CellField::GetGrowth(const glm::dvec3& gradient) const
