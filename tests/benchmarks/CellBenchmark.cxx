@@ -5,10 +5,10 @@
 #include "MediumFunction.h"
 #include "PictureFile.h"
 
-#include "DSMBricks/cells/PlaceInBrick.h"
 #include "DSMBricks/cells/PointGradients.h"
 #include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/cells/SharedPlaces.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
 
 #include "tests/support/CellModel.h"

@@ -4,10 +4,10 @@
 
 #include "tests/support/CellModel.h"
 
-#include "DSMBricks/cells/PlaceInBrick.h"
 #include "DSMBricks/cells/PointGradients.h"
 #include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/cells/SharedPlaces.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Messenger.h"
 

@@ -3,9 +3,9 @@
 #define TestCells_h
 
 #include "DSMBricks/cells/CellSource.h"
-#include "DSMBricks/cells/PlaceInBrick.h"
 #include "DSMBricks/cells/SharedPlaces.h"
 #include "DSMBricks/layout/BrickSpace.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 
 #include <algorithm>
 #include <array>

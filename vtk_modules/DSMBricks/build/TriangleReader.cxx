@@ -3,6 +3,7 @@
 
 #include "DSMBricks/build/TriangleBrickBuilder.h"
 #include "DSMBricks/layout/OctahedralNormal.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 #include "DSMBricks/layout/TriangleBrickHeader.h"
 #include "DSMCore/base/Error.h"
 
@@ -137,13 +138,10 @@ bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int o
   {
     return false;
   }
-  const double perUnit = 1.0 / this->Space.Scale;
   float read[9];
-  for (int word = 0; word < 9; ++word)
+  for (int word = 0; word < 9; word += 3)
   {
-    // Adding zero makes zeros positive.
-    read[word] =
-      static_cast<float>((positions[word] - this->Space.Origin[word % 3]) * perUnit) + 0.0f;
+    PlaceInBrick(this->Space, positions + word, read + word);
   }
   int first = 0;
   for (int corner = 1; corner < 3; ++corner)

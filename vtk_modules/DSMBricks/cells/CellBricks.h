@@ -37,8 +37,6 @@ struct CellValues
   std::shared_ptr<dsm::BlockSegment> Segment;
   RangedBrickBvh Hierarchy;
   IsovalueSurvey Survey;
-  bool HasGradients = false; ///< blocks have gradients at the corners, too
-  bool HasHoles = false;     ///< some corners have no value (NaN): their cells are not shown
 };
 
 } // namespace bricks

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/cells/CellRecords.h"
 
-#include "DSMBricks/cells/PlaceInBrick.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>

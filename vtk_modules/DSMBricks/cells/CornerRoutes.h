@@ -25,12 +25,6 @@ struct CornerRoutes
   std::vector<Brick> Bricks;
   std::vector<std::uint16_t> Slots;  ///< number of the corner in the brick
   std::vector<std::uint32_t> Points; ///< number of the point in the source
-
-  std::size_t GetBytes() const
-  {
-    return this->Bricks.size() * sizeof(Brick) + this->Slots.size() * sizeof(std::uint16_t) +
-      this->Points.size() * sizeof(std::uint32_t);
-  }
 };
 
 } // namespace bricks

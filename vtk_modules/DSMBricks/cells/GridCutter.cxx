@@ -4,7 +4,7 @@
 #include "DSMBricks/base/Box.h"
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMBricks/cells/CellBrickWriter.h"
-#include "DSMBricks/cells/PlaceInBrick.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -3,10 +3,10 @@
 
 #include "DSMBricks/cells/CornerOrder.h"
 #include "DSMBricks/cells/ExactScale.h"
-#include "DSMBricks/cells/PlaceInBrick.h"
 #include "DSMBricks/cells/PointNotes.h"
 #include "DSMBricks/cells/ShownCells.h"
 #include "DSMBricks/cells/SplitCell.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 #include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMBricks/cells/CellBrick.h"
 #include "DSMBricks/cells/PublishCells.h"
+#include "DSMBricks/layout/FillValues.h"
 #include "DSMBricks/sorted/RecordExchange.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/publish/FragmentStream.h"
@@ -167,22 +168,9 @@ private:
   float Step;
 };
 
-/// What is known of the values of some bricks.
-struct Summary
-{
-  IsovalueSurvey Survey;
-  bool HasHoles = false;
-
-  void Add(const Summary& other)
-  {
-    this->Survey.Add(other.Survey);
-    this->HasHoles = this->HasHoles || other.HasHoles;
-  }
-};
-
 /// Writes the values of a brick. `arrived` is completed.
 std::vector<std::byte> WriteValues(
-  const CellBrick& brick, Arrived& arrived, bool hasGradients, Summary& summary)
+  const CellBrick& brick, Arrived& arrived, bool hasGradients, IsovalueSurvey& survey)
 {
   const CellBrickHeader& header = brick.GetHeader();
   arrived.Reach(header.Points, hasGradients);
@@ -202,11 +190,10 @@ std::vector<std::byte> WriteValues(
         isWhole = isWhole && !std::isnan(value);
         range.Add({ value, value });
       }
-      summary.HasHoles = summary.HasHoles || !isWhole;
       if (isWhole)
       {
         groups[group].Add(range);
-        summary.Survey.CountRange(range.First, range.Last, false);
+        survey.CountRange(range.First, range.Last, false);
       }
     }
     all.Add(groups[group]);
@@ -256,10 +243,11 @@ std::vector<std::byte> WriteValues(
   return bytes;
 }
 
-/// Calls `visit(id, block, thread)` for this rank's bricks of cells, by several threads where they are in memory.
+/// Calls `visit(id, block, thread)` for the bricks of cells that this rank owns, by several threads where they are in
+/// memory. `first`, `step`: their numbers; `own`: their count.
 template <class Visit>
-void ForEachOwn(
-  const dsm::BlockSegment& segment, int rank, int ranks, int threads, const Visit& visit)
+void ForEachOwn(const dsm::BlockSegment& segment, std::size_t first, std::size_t step,
+  std::size_t own, int threads, const Visit& visit)
 {
   if (segment.GetDirectory().IsFromSource())
   {
@@ -267,15 +255,10 @@ void ForEachOwn(
       [&](dsm::BlockId id, const std::byte* block, std::size_t) { visit(id, block, 0); });
     return;
   }
-  const auto first = static_cast<std::size_t>(rank);
-  const std::size_t bricks = segment.GetDirectory().GetCount();
-  const std::size_t own = bricks > first
-    ? (bricks - first + static_cast<std::size_t>(ranks) - 1) / static_cast<std::size_t>(ranks)
-    : 0;
   ParallelFor(threads, own,
     [&](std::size_t number, int thread)
     {
-      const dsm::BlockId id = first + number * static_cast<std::size_t>(ranks);
+      const dsm::BlockId id = first + number * step;
       visit(id, segment.GetOwned(id), thread);
     });
 }
@@ -297,19 +280,19 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
 {
   using Progress = dsm::FunctionRef<void(double)>;
   const int ranks = messenger.GetSize();
-  const int rank = messenger.GetRank();
   const int workers = std::max(threads, 1);
   const dsm::BlockDirectory& topology = cells->Segment->GetDirectory();
   const auto flags = messenger.AllGatherValue(std::uint8_t(gradients.empty() ? 0 : 1));
   const bool hasGradients = *std::max_element(flags.begin(), flags.end()) != 0;
   const std::size_t bricks = topology.GetCount();
+  const auto first = static_cast<std::size_t>(messenger.GetRank());
   const auto step = static_cast<std::size_t>(ranks);
   std::vector<Arrived> arrived;
   std::optional<ValueSource> values;
   messenger.RunTogether(what,
     [&]
     {
-      arrived.resize((bricks + step - 1) / step);
+      arrived.resize((bricks + step - 1 - first) / step);
       values.emplace(routes, getValue, gradients, hasGradients);
     });
   const auto absorb = [&](dsm::BlockId id, const std::byte* bytes, std::size_t count)
@@ -318,7 +301,7 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
   const dsm::FirstFailure failure = dsm::FragmentStream::Run(
     messenger, topology, *values, absorb, progress ? Progress(ofMoving) : Progress());
 
-  std::vector<Summary> ofThread;
+  std::vector<IsovalueSurvey> ofThread;
   std::vector<dsm::Fragment> blocks;
   const auto all = messenger.GatherTogether(what,
     [&]
@@ -327,12 +310,7 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
       ofThread.resize(static_cast<std::size_t>(workers));
       blocks.resize(arrived.size());
       std::vector<BlockSummary> mine(arrived.size());
-      std::size_t own = 0;
-      for (dsm::BlockId id = static_cast<dsm::BlockId>(rank); id < bricks; id += step)
-      {
-        ++own;
-      }
-      ForEachOwn(*cells->Segment, rank, ranks, workers,
+      ForEachOwn(*cells->Segment, first, step, arrived.size(), workers,
         [&](dsm::BlockId id, const std::byte* block, int thread)
         {
           const std::size_t number = id / step;
@@ -343,21 +321,16 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
           const CellValueHeader& header = CellValueBrick(blocks[number].Bytes.data()).GetHeader();
           mine[number] = { header.BlockBytes, { header.First, header.Last } };
         });
-      blocks.resize(own);
-      std::vector<std::byte> bytes(own * sizeof(BlockSummary));
+      std::vector<std::byte> bytes(mine.size() * sizeof(BlockSummary));
       std::memcpy(bytes.data(), mine.data(), bytes.size());
       return bytes;
     });
-  const auto summaries = messenger.GatherValueTogether(what,
-    [&]
-    {
-      Summary mine;
-      for (const Summary& one : ofThread)
-      {
-        mine.Add(one);
-      }
-      return mine;
-    });
+  LimitedSurvey mine;
+  for (const IsovalueSurvey& one : ofThread)
+  {
+    mine.Within.Add(one);
+  }
+  const IsovalueSurvey survey = AddSurveys(mine, messenger).Within;
 
   std::shared_ptr<CellValues> published;
   std::optional<dsm::BlockDirectory> directory;
@@ -367,14 +340,7 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
     {
       published = std::make_shared<CellValues>();
       published->Cells = cells;
-      published->HasGradients = hasGradients;
-      Summary sum;
-      for (const Summary& one : summaries)
-      {
-        sum.Add(one);
-      }
-      published->Survey = sum.Survey;
-      published->HasHoles = sum.HasHoles;
+      published->Survey = survey;
       std::vector<std::uint32_t> bytes;
       std::vector<ValueRange> ranges;
       for (std::size_t id = 0; id < bricks; ++id)

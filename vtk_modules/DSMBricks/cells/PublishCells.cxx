@@ -114,8 +114,7 @@ private:
 /// Summary of a brick of a grid, for messages between ranks.
 struct GridBrickSummary
 {
-  float Lower[3];
-  float Upper[3];
+  BoundingBox Box;
   std::uint32_t Bytes;
 };
 
@@ -130,13 +129,9 @@ dsm::BlockId AddGridBricks(std::string_view what, const std::vector<GridBrick>& 
       std::vector<std::byte> mine(own.size() * sizeof(GridBrickSummary));
       for (std::size_t number = 0; number < own.size(); ++number)
       {
-        GridBrickSummary summary{};
-        float bounds[4];
-        own[number].Brick.Bounds.Lower.Store(bounds);
-        std::copy_n(bounds, 3, summary.Lower);
-        own[number].Brick.Bounds.Upper.Store(bounds);
-        std::copy_n(bounds, 3, summary.Upper);
-        summary.Bytes = static_cast<std::uint32_t>(own[number].Brick.Bytes.size());
+        const RecordBrick& brick = own[number].Brick;
+        const GridBrickSummary summary{ brick.Bounds,
+          static_cast<std::uint32_t>(brick.Bytes.size()) };
         std::memcpy(mine.data() + number * sizeof(summary), &summary, sizeof(summary));
       }
       return mine;
@@ -152,9 +147,7 @@ dsm::BlockId AddGridBricks(std::string_view what, const std::vector<GridBrick>& 
         {
           GridBrickSummary summary;
           std::memcpy(&summary, all[rank].data() + offset, sizeof(summary));
-          const float lower[4] = { summary.Lower[0], summary.Lower[1], summary.Lower[2], 0.0f };
-          const float upper[4] = { summary.Upper[0], summary.Upper[1], summary.Upper[2], 0.0f };
-          bricks.Boxes.push_back({ Float4::Load(lower), Float4::Load(upper) });
+          bricks.Boxes.push_back(summary.Box);
           bricks.Bytes.push_back(summary.Bytes);
         }
       }
@@ -228,14 +221,6 @@ void ExchangeRoutes(std::string_view what, const SortedBricks& bricks,
 {
   using Piece = std::pair<std::uint32_t, std::vector<std::uint32_t>>;
   std::vector<Piece> pieces;
-  std::optional<dsm::BlockDirectory> directory;
-  messenger.RunTogether(what,
-    [&]
-    {
-      const int ranks = messenger.GetSize();
-      directory.emplace(std::vector<std::uint32_t>(static_cast<std::size_t>(ranks), 0),
-        dsm::RoundRobinAssigner(ranks));
-    });
   RouteSource source(bricks);
   const auto absorb = [&](dsm::BlockId, const std::byte* bytes, std::size_t count)
   {
@@ -243,12 +228,10 @@ void ExchangeRoutes(std::string_view what, const SortedBricks& bricks,
     std::memcpy(words.data(), bytes, words.size() * sizeof(std::uint32_t));
     pieces.emplace_back(words.at(0), std::move(words));
   };
-  const dsm::FirstFailure failure =
-    dsm::FragmentStream::Run(messenger, *directory, source, absorb, {});
+  dsm::FragmentStream::RunToRanks(what, messenger, source, absorb);
   messenger.RunTogether(what,
     [&]
     {
-      failure.Throw();
       std::sort(pieces.begin(), pieces.end(),
         [](const Piece& one, const Piece& other) { return one.first < other.first; });
       routes = CornerRoutes();

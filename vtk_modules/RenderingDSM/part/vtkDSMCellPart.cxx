@@ -3,10 +3,10 @@
 
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMBricks/cells/AverageCells.h"
-#include "DSMBricks/cells/PlaceInBrick.h"
 #include "DSMBricks/cells/PointGradients.h"
 #include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/cells/SharedPlaces.h"
+#include "DSMBricks/layout/PlaceInBrick.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 
