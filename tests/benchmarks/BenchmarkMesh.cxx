@@ -190,8 +190,7 @@ std::shared_ptr<bricks::TriangleMesh> BenchmarkMesh::PublishRuns(
   };
   for (const std::uint64_t triangle : order)
   {
-    std::uint64_t code = 0;
-    if (!reader.FindCode(triangle, curve, code))
+    if (reader.FindCode(triangle, curve) == bricks::RecordReader::NoCode)
     {
       continue;
     }

@@ -82,27 +82,32 @@ public:
     return { "cloud", "drops", sizeof(Drop), sizeof(Drop), 1000 };
   }
   std::uint64_t GetCount() const override { return this->Drops.size(); }
-  bool FindBounds(std::uint64_t drop, glm::dvec3& lower, glm::dvec3& upper) const override
+  bricks::PositionBounds FindBounds(int threads) const override
   {
-    const float* const p = this->Drops[drop].Place;
-    lower = upper = glm::dvec3(p[0], p[1], p[2]);
-    return true;
+    return bricks::FindPositionBounds(threads, this->GetCount(),
+      [this](std::uint64_t drop, bricks::PositionBounds& bounds)
+      {
+        const float* const p = this->Drops[drop].Place;
+        bounds.Add(glm::dvec3(p[0], p[1], p[2]));
+      });
   }
-  void SetSpace(const bricks::BrickSpace& space) override
+  void SetSpace(const bricks::BrickSpace& space, int) override
   {
     EXPECT_EQ(space.Origin, glm::dvec3(0.0));
     EXPECT_EQ(space.Scale, 1.0);
   }
-  bool FindCode(
-    std::uint64_t drop, const bricks::MortonCode& order, std::uint64_t& code) const override
+  void FindCodes(std::uint64_t begin, std::uint64_t end, const bricks::MortonCode& order,
+    std::uint64_t* codes) const override
   {
-    float corners[9];
-    for (int word = 0; word < 9; ++word)
+    for (std::uint64_t drop = begin; drop < end; ++drop)
     {
-      corners[word] = this->Drops[drop].Place[word % 3];
+      float corners[9];
+      for (int word = 0; word < 9; ++word)
+      {
+        corners[word] = this->Drops[drop].Place[word % 3];
+      }
+      codes[drop - begin] = order.GetOfTriangle(corners);
     }
-    code = order.GetOfTriangle(corners);
-    return true;
   }
   void ReadRecord(std::uint64_t drop, std::uint32_t* record) const override
   {

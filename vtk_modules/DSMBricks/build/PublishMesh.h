@@ -23,8 +23,9 @@ MeshAttributes AgreeOnAttributes(
   std::string_view what, const TriangleSource& source, dsm::Messenger& messenger);
 
 /// Collective, between frames: publishes the mesh in bricks. Every rank gives its own triangles; nothing is kept of
-/// the source. Throws the same dsm::Error on every rank. At its peak a rank holds, beside its piece, 32 bytes for
-/// each of its own triangles and about 85 for each that it will own, of a mesh with normals and a value.
+/// the source. Throws the same dsm::Error on every rank. At its peak a rank holds, beside its piece, 32 bytes for each
+/// of its own triangles. A mesh with normals and a value also takes about 25 bytes for each triangle that the rank will
+/// own, and 60 more for one that comes from another rank.
 template <class Store>
 std::shared_ptr<TriangleMesh> PublishMesh(std::string_view what, const TriangleSource& source,
   const TriangleMeshSettings& settings, Store& store, dsm::Messenger& messenger,
@@ -32,7 +33,7 @@ std::shared_ptr<TriangleMesh> PublishMesh(std::string_view what, const TriangleS
 {
   const MeshAttributes attributes = AgreeOnAttributes(what, source, messenger);
   TriangleReader reader(source, attributes);
-  SortedBrickBuilder builder(what, reader, settings, messenger);
+  SortedBrickBuilder builder(what, reader, settings, messenger, progress);
   std::shared_ptr<TriangleMesh> mesh;
   messenger.RunTogether(what, [&] { mesh = std::make_shared<TriangleMesh>(); });
   static_cast<BrickSpace&>(*mesh) = builder.GetSpace();

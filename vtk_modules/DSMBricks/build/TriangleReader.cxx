@@ -7,7 +7,6 @@
 #include "DSMBricks/layout/TriangleBrickHeader.h"
 #include "DSMCore/base/Error.h"
 
-#include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
@@ -88,15 +87,24 @@ std::unique_ptr<RecordBrickBuilder> TriangleReader::CreateBuilder(
   return std::make_unique<TriangleBrickBuilder>(this->Attributes, order, largestCount);
 }
 
-bool TriangleReader::FindBounds(std::uint64_t triangle, glm::dvec3& lower, glm::dvec3& upper) const
+PositionBounds TriangleReader::FindBounds(int threads) const
 {
-  double positions[9];
-  const bool isFinite = this->ReadPositions(triangle, positions);
-  const glm::dvec3 corners[3] = { glm::make_vec3(positions), glm::make_vec3(positions + 3),
-    glm::make_vec3(positions + 6) };
-  lower = glm::min(glm::min(corners[0], corners[1]), corners[2]);
-  upper = glm::max(glm::max(corners[0], corners[1]), corners[2]);
-  return isFinite;
+  return FindPositionBounds(threads, this->GetCount(),
+    [this](std::uint64_t triangle, PositionBounds& bounds)
+    {
+      double positions[9];
+      if (this->ReadPositions(triangle, positions))
+      {
+        bounds.Add(glm::make_vec3(positions));
+        bounds.Add(glm::make_vec3(positions + 3));
+        bounds.Add(glm::make_vec3(positions + 6));
+      }
+    });
+}
+
+void TriangleReader::SetSpace(const BrickSpace& space, int)
+{
+  this->Space = space;
 }
 
 bool TriangleReader::ReadPositions(std::uint64_t triangle, double positions[9]) const
@@ -121,14 +129,20 @@ bool TriangleReader::ReadPositions(std::uint64_t triangle, double positions[9]) 
   return finite;
 }
 
-bool TriangleReader::FindCode(
-  std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const
+std::uint64_t TriangleReader::FindCode(std::uint64_t triangle, const MortonCode& order) const
 {
   float corners[9];
   int turned[3];
-  const bool canBeHit = this->ReadCorners(triangle, corners, turned);
-  code = canBeHit ? order.GetOfTriangle(corners) : 0;
-  return canBeHit;
+  return this->ReadCorners(triangle, corners, turned) ? order.GetOfTriangle(corners) : NoCode;
+}
+
+void TriangleReader::FindCodes(
+  std::uint64_t begin, std::uint64_t end, const MortonCode& order, std::uint64_t* codes) const
+{
+  for (std::uint64_t triangle = begin; triangle < end; ++triangle)
+  {
+    codes[triangle - begin] = this->FindCode(triangle, order);
+  }
 }
 
 bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const

@@ -20,12 +20,13 @@ public:
 
   RecordKind GetKind() const override;
   std::uint64_t GetCount() const override { return this->Source.GetTriangleCount(); }
-  /// Throws dsm::Error when the triangle has a point that the source does not.
-  bool FindBounds(std::uint64_t triangle, glm::dvec3& lower, glm::dvec3& upper) const override;
-  void SetSpace(const BrickSpace& space) override { this->Space = space; }
-  /// The code is that of the triangle's centroid.
-  bool FindCode(
-    std::uint64_t triangle, const MortonCode& order, std::uint64_t& code) const override;
+  /// Throws dsm::Error when a triangle has a point that the source does not.
+  PositionBounds FindBounds(int threads) const override;
+  void SetSpace(const BrickSpace& space, int threads) override;
+  void FindCodes(std::uint64_t begin, std::uint64_t end, const MortonCode& order,
+    std::uint64_t* codes) const override;
+  /// The code of the triangle's centroid, or NoCode.
+  std::uint64_t FindCode(std::uint64_t triangle, const MortonCode& order) const;
   /// A TriangleRecord.
   void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const override;
   std::unique_ptr<RecordBrickBuilder> CreateBuilder(

@@ -116,7 +116,7 @@ private:
   void ForEachCell(const Visit& visit) const
   {
     ForEachShownCell(this->Source, this->Threads,
-      [&](std::uint64_t cell, const std::uint64_t* points, int corners, std::size_t chunk)
+      [&](std::uint64_t cell, const std::uint64_t* points, int corners, std::size_t chunk, int)
       {
         const double value = this->GetValue(cell);
         if (std::isfinite(value))

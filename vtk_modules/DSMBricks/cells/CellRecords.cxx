@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/cells/CellRecords.h"
 
-#include "DSMBricks/layout/PlaceInBrick.h"
+#include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/cells/ShownCells.h"
+#include "DSMCore/memory/BlockArena.h"
 
-#include <glm/common.hpp>
-#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace bricks
 {
@@ -19,7 +21,13 @@ namespace bricks
 namespace
 {
 
-constexpr std::size_t WordsOfCorner = sizeof(CornerRecord) / sizeof(std::uint32_t);
+/// Points, when their positions are looked through.
+enum PointState : std::uint8_t
+{
+  Unused,   ///< by any cell
+  Used,     ///< by a shown cell of finite corners, or by a structured grid
+  NotFinite ///< the position
+};
 
 /// Ascending by place, then by source.
 bool IsBefore(const CornerRecord& one, const CornerRecord& other)
@@ -38,6 +46,7 @@ double EstimateBytes(int corners)
 
 void GetCenter(const CornerRecord* corners, int count, double center[3])
 {
+  const double perCorner = count == 4 ? 0.25 : 0.125;
   for (int axis = 0; axis < 3; ++axis)
   {
     double sum = 0.0;
@@ -45,7 +54,47 @@ void GetCenter(const CornerRecord* corners, int count, double center[3])
     {
       sum += corners[corner].Place[axis];
     }
-    center[axis] = sum / count;
+    center[axis] = sum * perCorner;
+  }
+}
+
+/// A number for a finite coordinate, in the same order.
+std::uint32_t ToOrdered(float coordinate)
+{
+  std::uint32_t bits;
+  std::memcpy(&bits, &coordinate, sizeof(bits));
+  constexpr std::uint32_t sign = std::uint32_t(1) << 31;
+  return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
+/// Sorts numbers of items by keys, and keeps the order of items of the same key. `other`: as large as `order`.
+void SortByKey(const std::vector<std::uint32_t>& keys, std::vector<std::uint32_t>& order,
+  std::vector<std::uint32_t>& other)
+{
+  constexpr int digitBits = 11;
+  constexpr std::size_t digits = std::size_t(1) << digitBits;
+  const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
+  const std::uint32_t lowest = *least;
+  const std::uint32_t range = *most - lowest;
+  for (int shift = 0; shift < 32 && range >> shift != 0; shift += digitBits)
+  {
+    const auto digitOf = [&](std::uint32_t item)
+    { return (keys[item] - lowest) >> shift & (digits - 1); };
+    std::uint32_t begins[digits] = {};
+    for (const std::uint32_t item : order)
+    {
+      ++begins[digitOf(item)];
+    }
+    std::uint32_t begin = 0;
+    for (std::uint32_t& ofDigit : begins)
+    {
+      begin += std::exchange(ofDigit, begin);
+    }
+    for (const std::uint32_t item : order)
+    {
+      other[begins[digitOf(item)]++] = item;
+    }
+    order.swap(other);
   }
 }
 
@@ -54,6 +103,7 @@ void GetCenter(const CornerRecord* corners, int count, double center[3])
 CellRecordReader::CellRecordReader(const CellSource& source, int corners, int rank)
   : Source(source)
   , Corners(corners)
+  , GivenCorners(source.HasOnlyTetrahedra() ? 4 : CellSource::MostCorners)
   , Rank(static_cast<std::uint32_t>(rank))
 {
   std::uint64_t cell = 0;
@@ -82,99 +132,152 @@ RecordKind CellRecordReader::GetKind() const
     this->Corners == 4 ? CellBrickHeader::MostPoints / 4 : CellBrickHeader::MostPoints / 8 };
 }
 
-std::uint64_t CellRecordReader::GetCell(std::uint64_t primitive) const
+const CellRecordReader::Run& CellRecordReader::FindRun(std::uint64_t primitive) const
 {
   const auto next = std::upper_bound(this->Runs.begin(), this->Runs.end(), primitive,
     [](std::uint64_t number, const Run& run) { return number < run.FirstPrimitive; });
-  return (next - 1)->FirstCell + (primitive - (next - 1)->FirstPrimitive);
+  return *(next - 1);
 }
 
-void CellRecordReader::FindOtherBounds(glm::dvec3& lower, glm::dvec3& upper) const
+template <class Visit>
+void CellRecordReader::ForEachPrimitive(
+  std::uint64_t begin, std::uint64_t end, const Visit& visit) const
 {
-  lower = glm::dvec3(std::numeric_limits<double>::infinity());
-  upper = -lower;
-  for (const CellSource::Grid& grid : this->Source.GetGrids())
+  while (begin < end)
   {
-    const Index3& points = grid.Points;
-    const auto count = static_cast<std::uint64_t>(points.x * points.y * points.z);
-    for (std::uint64_t point = grid.FirstPoint; point < grid.FirstPoint + count; ++point)
-    {
-      glm::dvec3 position;
-      this->Source.GetPosition(point, &position.x);
-      if (std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z))
-      {
-        lower = glm::min(lower, position);
-        upper = glm::max(upper, position);
-      }
-    }
+    const Run& run = this->FindRun(begin);
+    const std::uint64_t endOfRun =
+      &run == &this->Runs.back() ? end : std::min(end, (&run + 1)->FirstPrimitive);
+    const std::uint64_t toPrimitive = run.FirstPrimitive - run.FirstCell; // may wrap around
+    ForEachCellRead(this->Source, begin - toPrimitive, endOfRun - toPrimitive,
+      [&](std::uint64_t cell, const std::uint64_t* points, bool isShown)
+      { visit(cell + toPrimitive, points, isShown); });
+    begin = endOfRun;
   }
 }
 
-bool CellRecordReader::FindBounds(
-  std::uint64_t primitive, glm::dvec3& lower, glm::dvec3& upper) const
+PositionBounds CellRecordReader::FindBounds(int threads) const
 {
-  const std::uint64_t cell = this->GetCell(primitive);
-  std::uint64_t points[CellSource::MostCorners];
-  this->Source.GetCorners(cell, points);
-  const int count = this->Source.HasOnlyTetrahedra() ? 4 : 8;
-  lower = glm::dvec3(std::numeric_limits<double>::infinity());
-  upper = -lower;
-  bool isFinite = this->Source.IsShown(cell);
-  for (int corner = 0; corner < count && isFinite; ++corner)
+  constexpr std::size_t chunkSize = std::size_t(1) << 14;
+  using State = std::atomic<std::uint8_t>;
+  const std::uint64_t points = this->Source.GetPointCount();
+  const dsm::BlockArena memory(points * sizeof(State));
+  auto* const states = reinterpret_cast<State*>(memory.GetData());
+  const auto getPosition = [this](std::uint64_t point)
   {
     glm::dvec3 position;
-    this->Source.GetPosition(points[corner], &position.x);
-    isFinite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
-    lower = glm::min(lower, position);
-    upper = glm::max(upper, position);
+    this->Source.GetPosition(point, &position.x);
+    return position;
+  };
+  const auto setStates = [&](std::uint64_t first, std::uint64_t count, PointState ofFinite)
+  {
+    ParallelForChunks(threads, count, chunkSize,
+      [&](std::size_t begin, std::size_t end, std::size_t, int)
+      {
+        for (std::uint64_t point = first + begin; point < first + end; ++point)
+        {
+          const glm::dvec3 at = getPosition(point);
+          const bool isFinite = std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z);
+          states[point].store(isFinite ? ofFinite : NotFinite, std::memory_order_relaxed);
+        }
+      });
+  };
+  setStates(0, points, Unused);
+  for (const CellSource::Grid& grid : this->Source.GetGrids())
+  {
+    const Index3& size = grid.Points;
+    setStates(grid.FirstPoint, static_cast<std::uint64_t>(size.x * size.y * size.z), Used);
   }
-  return isFinite;
+  ParallelForChunks(threads, this->Count, chunkSize,
+    [&](std::size_t first, std::size_t last, std::size_t, int)
+    {
+      this->ForEachPrimitive(first, last,
+        [&](std::uint64_t, const std::uint64_t* corners, bool isShown)
+        {
+          const auto isFinite = [states](std::uint64_t point)
+          { return states[point].load(std::memory_order_relaxed) != NotFinite; };
+          if (isShown && std::all_of(corners, corners + this->GivenCorners, isFinite))
+          {
+            std::for_each(corners, corners + this->GivenCorners,
+              [states](std::uint64_t point)
+              { states[point].store(Used, std::memory_order_relaxed); });
+          }
+        });
+    });
+  return FindPositionBounds(threads, points,
+    [&](std::uint64_t point, PositionBounds& bounds)
+    {
+      if (states[point].load(std::memory_order_relaxed) == Used)
+      {
+        bounds.Add(getPosition(point));
+      }
+    });
 }
 
-bool CellRecordReader::ReadCorners(
-  std::uint64_t primitive, CornerRecord corners[CellBrick::MostCorners]) const
+void CellRecordReader::SetSpace(const BrickSpace& space, int threads)
 {
-  const std::uint64_t cell = this->GetCell(primitive);
-  std::uint64_t points[CellSource::MostCorners];
-  this->Source.GetCorners(cell, points);
-  if (this->Corners == 8 && this->Source.HasOnlyTetrahedra())
-  {
-    // As a hexahedron among those of other ranks.
-    const std::uint64_t repeated[8] = { points[0], points[1], points[2], points[2], points[3],
-      points[3], points[3], points[3] };
-    std::copy_n(repeated, 8, points);
-  }
-  bool isFinite = this->Source.IsShown(cell);
-  for (int corner = 0; corner < this->Corners && isFinite; ++corner)
-  {
-    double position[3];
-    this->Source.GetPosition(points[corner], position);
-    isFinite = PlaceInBrick(this->Space, position, corners[corner].Place);
-    corners[corner].Rank = this->Rank;
-    corners[corner].Point = static_cast<std::uint32_t>(points[corner]);
-  }
-  return isFinite;
+  this->Places = PointPlaces(this->Source, space, threads);
 }
 
-bool CellRecordReader::FindCode(
-  std::uint64_t primitive, const MortonCode& order, std::uint64_t& code) const
+void CellRecordReader::Expand(
+  const std::uint64_t* given, std::uint64_t points[CellBrick::MostCorners]) const
 {
-  CornerRecord corners[CellBrick::MostCorners];
-  if (!this->ReadCorners(primitive, corners))
+  if (this->GivenCorners == this->Corners)
   {
-    return false;
+    std::copy_n(given, this->Corners, points);
+    return;
   }
-  double center[3];
-  GetCenter(corners, this->Corners, center);
-  code = order.Get(center);
-  return true;
+  // As a hexahedron among those of other ranks.
+  const std::uint64_t repeated[8] = { given[0], given[1], given[2], given[2], given[3], given[3],
+    given[3], given[3] };
+  std::copy_n(repeated, 8, points);
+}
+
+void CellRecordReader::FindCodes(
+  std::uint64_t begin, std::uint64_t end, const MortonCode& order, std::uint64_t* codes) const
+{
+  this->ForEachPrimitive(begin, end,
+    [&](std::uint64_t primitive, const std::uint64_t* given, bool isShown)
+    {
+      std::uint64_t& code = codes[primitive - begin];
+      code = NoCode;
+      if (!isShown)
+      {
+        return;
+      }
+      std::uint64_t points[CellBrick::MostCorners];
+      this->Expand(given, points);
+      CornerRecord corners[CellBrick::MostCorners];
+      bool isFinite = true;
+      for (int corner = 0; corner < this->Corners; ++corner)
+      {
+        const float* const place = this->Places.Get(points[corner]);
+        isFinite = isFinite && PointPlaces::IsFinite(place);
+        std::copy_n(place, 3, corners[corner].Place);
+      }
+      if (isFinite)
+      {
+        double center[3];
+        GetCenter(corners, this->Corners, center);
+        code = order.Get(center);
+      }
+    });
 }
 
 void CellRecordReader::ReadRecord(std::uint64_t primitive, std::uint32_t* record) const
 {
-  CornerRecord corners[CellBrick::MostCorners];
-  this->ReadCorners(primitive, corners);
-  std::memcpy(record, corners, static_cast<std::size_t>(this->Corners) * sizeof(CornerRecord));
+  const Run& run = this->FindRun(primitive);
+  std::uint64_t given[CellSource::MostCorners];
+  std::uint64_t points[CellBrick::MostCorners];
+  this->Source.GetCorners(run.FirstCell + (primitive - run.FirstPrimitive), given);
+  this->Expand(given, points);
+  auto* const corners = reinterpret_cast<CornerRecord*>(record);
+  for (int corner = 0; corner < this->Corners; ++corner)
+  {
+    std::copy_n(this->Places.Get(points[corner]), 3, corners[corner].Place);
+    corners[corner].Rank = this->Rank;
+    corners[corner].Point = static_cast<std::uint32_t>(points[corner]);
+  }
 }
 
 std::unique_ptr<RecordBrickBuilder> CellRecordReader::CreateBuilder(
@@ -186,14 +289,14 @@ std::unique_ptr<RecordBrickBuilder> CellRecordReader::CreateBuilder(
 CellRecordBuilder::CellRecordBuilder(
   int corners, const MortonCode& order, std::uint32_t largestCount)
   : Corners(corners)
-  , Order(order)
+  , Curve(order)
   , LargestCount(largestCount)
 {
 }
 
 std::vector<RecordBrick> CellRecordBuilder::Build(const std::uint32_t* records, std::size_t count)
 {
-  this->Sort(records, count);
+  this->SortCells(records, count);
   const std::size_t parts = (count + this->LargestCount - 1) / this->LargestCount;
   std::vector<RecordBrick> bricks;
   bricks.reserve(parts);
@@ -206,7 +309,7 @@ std::vector<RecordBrick> CellRecordBuilder::Build(const std::uint32_t* records, 
   return bricks;
 }
 
-void CellRecordBuilder::Sort(const std::uint32_t* records, std::size_t count)
+void CellRecordBuilder::SortCells(const std::uint32_t* records, std::size_t count)
 {
   const auto* const corners = reinterpret_cast<const CornerRecord*>(records);
   const auto each = static_cast<std::size_t>(this->Corners);
@@ -216,23 +319,27 @@ void CellRecordBuilder::Sort(const std::uint32_t* records, std::size_t count)
     const CornerRecord* const record = corners + index * each;
     double center[3];
     GetCenter(record, this->Corners, center);
-    this->Keys[index] = { this->Order.Get(center), record };
+    this->Keys[index] = { this->Curve.Get(center), record };
   }
-  std::sort(this->Keys.begin(), this->Keys.end(),
-    [each](const Key& a, const Key& b)
-    {
-      return a.Code != b.Code ? a.Code < b.Code
-                              : std::lexicographical_compare(
-                                  a.Record, a.Record + each, b.Record, b.Record + each, IsBefore);
-    });
+  const auto isBefore = [each](const Key& a, const Key& b)
+  {
+    return a.Code != b.Code ? a.Code < b.Code
+                            : std::lexicographical_compare(
+                                a.Record, a.Record + each, b.Record, b.Record + each, IsBefore);
+  };
+  // They are where they come from one rank.
+  if (!std::is_sorted(this->Keys.begin(), this->Keys.end(), isBefore))
+  {
+    std::sort(this->Keys.begin(), this->Keys.end(), isBefore);
+  }
 }
 
 RecordBrick CellRecordBuilder::BuildBrick(const Key* keys, std::size_t count)
 {
   this->CollectPoints(keys, count);
   RecordBrick brick = this->Writer.Write(this->Points, this->CornerNumbers, this->Corners);
-  brick.Notes.reserve(2 * this->Found.size());
-  for (const CornerRecord& point : this->Found)
+  brick.Notes.reserve(2 * this->Sorted.size());
+  for (const CornerRecord& point : this->Sorted)
   {
     brick.Notes.push_back(point.Rank);
     brick.Notes.push_back(point.Point);
@@ -243,13 +350,13 @@ RecordBrick CellRecordBuilder::BuildBrick(const Key* keys, std::size_t count)
 void CellRecordBuilder::CollectPoints(const Key* keys, std::size_t count)
 {
   const auto each = static_cast<std::size_t>(this->Corners);
-  std::size_t places = 64;
-  while (places < 2 * each * count)
+  std::size_t size = 64;
+  while (size < 2 * count)
   {
-    places *= 2;
+    size *= 2;
   }
-  this->Table.assign(places, 0);
   this->Found.clear();
+  this->EnlargeTable(size);
   this->CornersFound.clear();
   for (std::size_t cell = 0; cell < count; ++cell)
   {
@@ -258,30 +365,65 @@ void CellRecordBuilder::CollectPoints(const Key* keys, std::size_t count)
       this->CornersFound.push_back(this->FindPoint(keys[cell].Record[corner]));
     }
   }
-  std::vector<std::uint32_t> order(this->Found.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(),
-    [this](std::uint32_t one, std::uint32_t other)
-    { return IsBefore(this->Found[one], this->Found[other]); });
-  this->Numbers.resize(order.size());
+  this->SortPoints();
+  this->Numbers.resize(this->Found.size());
   this->Points.clear();
-  std::vector<CornerRecord> sorted;
-  sorted.reserve(order.size());
-  for (const std::uint32_t point : order)
+  this->Sorted.clear();
+  for (const std::uint32_t point : this->Order)
   {
-    this->Numbers[point] = static_cast<std::uint16_t>(sorted.size());
-    sorted.push_back(this->Found[point]);
-    this->Points.insert(this->Points.end(), sorted.back().Place, sorted.back().Place + 3);
+    this->Numbers[point] = static_cast<std::uint16_t>(this->Sorted.size());
+    this->Sorted.push_back(this->Found[point]);
+    this->Points.insert(this->Points.end(), this->Found[point].Place, this->Found[point].Place + 3);
   }
-  this->Found.swap(sorted);
-  this->CornerNumbers.clear();
-  for (const std::uint32_t point : this->CornersFound)
+  this->CornerNumbers.resize(this->CornersFound.size());
+  std::transform(this->CornersFound.begin(), this->CornersFound.end(), this->CornerNumbers.begin(),
+    [this](std::uint32_t point) { return this->Numbers[point]; });
+}
+
+void CellRecordBuilder::SortPoints()
+{
+  const std::size_t count = this->Found.size();
+  this->Order.resize(count);
+  this->OtherOrder.resize(count);
+  std::iota(this->Order.begin(), this->Order.end(), 0u);
+  for (int axis = 2; axis >= 0; --axis)
   {
-    this->CornerNumbers.push_back(this->Numbers[point]);
+    this->Axis.resize(count);
+    std::transform(this->Found.begin(), this->Found.end(), this->Axis.begin(),
+      [axis](const CornerRecord& corner) { return ToOrdered(corner.Place[axis]); });
+    SortByKey(this->Axis, this->Order, this->OtherOrder);
+  }
+  const auto isSamePlace = [this](std::uint32_t one, std::uint32_t other)
+  {
+    return std::equal(this->Found[one].Place, this->Found[one].Place + 3, this->Found[other].Place);
+  };
+  for (auto first = this->Order.begin(); first != this->Order.end();)
+  {
+    auto last = first + 1;
+    while (last != this->Order.end() && isSamePlace(*first, *last))
+    {
+      ++last;
+    }
+    if (last - first > 1)
+    {
+      std::sort(first, last,
+        [this](std::uint32_t one, std::uint32_t other)
+        { return IsBefore(this->Found[one], this->Found[other]); });
+    }
+    first = last;
   }
 }
 
-std::uint32_t CellRecordBuilder::FindPoint(const CornerRecord& corner)
+void CellRecordBuilder::EnlargeTable(std::size_t size)
+{
+  this->Table.assign(size, 0);
+  for (std::size_t point = 0; point < this->Found.size(); ++point)
+  {
+    this->FindEntry(this->Found[point]) = static_cast<std::uint32_t>(point + 1);
+  }
+}
+
+std::uint32_t& CellRecordBuilder::FindEntry(const CornerRecord& corner)
 {
   std::uint64_t hash = ((std::uint64_t(corner.Rank) << 32) ^ corner.Point) * 0x9e3779b97f4a7c15u;
   hash ^= hash >> 32;
@@ -289,18 +431,29 @@ std::uint32_t CellRecordBuilder::FindPoint(const CornerRecord& corner)
   for (std::size_t place = hash & mask;; place = (place + 1) & mask)
   {
     std::uint32_t& entry = this->Table[place];
-    if (entry == 0)
+    if (entry == 0 ||
+      (this->Found[entry - 1].Point == corner.Point && this->Found[entry - 1].Rank == corner.Rank))
     {
-      this->Found.push_back(corner);
-      entry = static_cast<std::uint32_t>(this->Found.size());
-      return entry - 1;
-    }
-    const CornerRecord& known = this->Found[entry - 1];
-    if (known.Rank == corner.Rank && known.Point == corner.Point)
-    {
-      return entry - 1;
+      return entry;
     }
   }
+}
+
+std::uint32_t CellRecordBuilder::FindPoint(const CornerRecord& corner)
+{
+  std::uint32_t& entry = this->FindEntry(corner);
+  if (entry != 0)
+  {
+    return entry - 1;
+  }
+  this->Found.push_back(corner);
+  const auto number = static_cast<std::uint32_t>(this->Found.size());
+  entry = number;
+  if (2 * this->Found.size() > this->Table.size())
+  {
+    this->EnlargeTable(2 * this->Table.size());
+  }
+  return number - 1;
 }
 
 } // namespace bricks

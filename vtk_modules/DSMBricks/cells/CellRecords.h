@@ -5,6 +5,7 @@
 #include "DSMBricks/base/MortonCode.h"
 #include "DSMBricks/cells/CellBrickWriter.h"
 #include "DSMBricks/cells/CellSource.h"
+#include "DSMBricks/cells/PointPlaces.h"
 #include "DSMBricks/layout/BrickSpace.h"
 #include "DSMBricks/sorted/RecordReader.h"
 
@@ -33,14 +34,13 @@ public:
 
   RecordKind GetKind() const override;
   std::uint64_t GetCount() const override { return this->Count; }
-  /// The bounds of the structured grids.
-  void FindOtherBounds(glm::dvec3& lower, glm::dvec3& upper) const override;
-  /// Throws dsm::Error when the cell has a point that the source does not.
-  bool FindBounds(std::uint64_t primitive, glm::dvec3& lower, glm::dvec3& upper) const override;
-  void SetSpace(const BrickSpace& space) override { this->Space = space; }
-  /// The code is that of the mean of the corners.
-  bool FindCode(
-    std::uint64_t primitive, const MortonCode& order, std::uint64_t& code) const override;
+  /// Counts the points of shown cells, and all points of structured grids. Takes a byte a point while it runs. Throws
+  /// dsm::Error when a cell has a point that the source does not.
+  PositionBounds FindBounds(int threads) const override;
+  void SetSpace(const BrickSpace& space, int threads) override;
+  /// The codes are those of the means of the corners.
+  void FindCodes(std::uint64_t begin, std::uint64_t end, const MortonCode& order,
+    std::uint64_t* codes) const override;
   void ReadRecord(std::uint64_t primitive, std::uint32_t* record) const override;
   std::unique_ptr<RecordBrickBuilder> CreateBuilder(
     const MortonCode& order, std::uint32_t largestCount) const override;
@@ -53,16 +53,21 @@ private:
     std::uint64_t FirstCell;
   };
 
-  std::uint64_t GetCell(std::uint64_t primitive) const;
-  /// Returns whether all corners are finite.
-  bool ReadCorners(std::uint64_t primitive, CornerRecord corners[CellBrick::MostCorners]) const;
+  /// Calls visit(primitive, points, isShown) for primitives [begin, end), in order.
+  template <class Visit>
+  void ForEachPrimitive(std::uint64_t begin, std::uint64_t end, const Visit& visit) const;
+  /// The run that a primitive is in.
+  const Run& FindRun(std::uint64_t primitive) const;
+  /// Points of a corner each, of those that the source gives for a cell.
+  void Expand(const std::uint64_t* given, std::uint64_t points[CellBrick::MostCorners]) const;
 
   const CellSource& Source;
   int Corners;
+  int GivenCorners; ///< that the source has of each cell
   std::uint32_t Rank;
   std::vector<Run> Runs;
   std::uint64_t Count = 0;
-  BrickSpace Space;
+  PointPlaces Places;
 };
 
 /// Makes bricks of such records; see RecordBrickBuilder. A brick's notes are rank and number of each of its points.
@@ -80,19 +85,29 @@ private:
     const CornerRecord* Record;
   };
 
-  void Sort(const std::uint32_t* records, std::size_t count);
+  /// Sorts the cells by code, and cells of the same code by their corners.
+  void SortCells(const std::uint32_t* records, std::size_t count);
   RecordBrick BuildBrick(const Key* keys, std::size_t count);
   /// Numbers the points of some cells in ascending order.
   void CollectPoints(const Key* keys, std::size_t count);
   std::uint32_t FindPoint(const CornerRecord& corner);
+  void EnlargeTable(std::size_t size);
+  /// The entry of a point, or the free one where it belongs.
+  std::uint32_t& FindEntry(const CornerRecord& corner);
+  /// Makes Order the numbers of the points in Found by place, and of the same place by source.
+  void SortPoints();
 
   int Corners;
-  MortonCode Order;
+  MortonCode Curve;
   std::uint32_t LargestCount;
   std::vector<Key> Keys;
   std::vector<CornerRecord> Found;  ///< each point once
+  std::vector<CornerRecord> Sorted; ///< the same in ascending order
   std::vector<std::uint32_t> Table; ///< numbers in Found plus one, by hash; 0 is free
   std::vector<std::uint32_t> CornersFound;
+  std::vector<std::uint32_t> Axis; ///< a coordinate of each point in Found, as a number
+  std::vector<std::uint32_t> Order;
+  std::vector<std::uint32_t> OtherOrder;
   std::vector<std::uint16_t> Numbers; ///< of the points in Found, in ascending order
   std::vector<std::uint16_t> CornerNumbers;
   std::vector<float> Points;

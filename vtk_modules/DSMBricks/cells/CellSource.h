@@ -4,6 +4,7 @@
 
 #include "DSMBricks/base/Box.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -45,6 +46,20 @@ public:
   virtual void GetCorners(std::uint64_t cell, std::uint64_t points[MostCorners]) const = 0;
   /// Returns whether the cell is shown, and counts as a neighbor of others: not so ghost cells and blanked ones.
   virtual bool IsShown(std::uint64_t cell) const = 0;
+  /// Cells [first, first + count), all in one grid or all in none: whether each is shown, and the points of those that
+  /// are. Throws as GetCorners does.
+  virtual void ReadCells(std::uint64_t first, std::size_t count,
+    std::uint64_t (*points)[MostCorners], bool* areShown) const
+  {
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      areShown[number] = this->IsShown(first + number);
+      if (areShown[number])
+      {
+        this->GetCorners(first + number, points[number]);
+      }
+    }
+  }
   /// In the dataset's own space. Cells with a corner that is not finite are left out.
   virtual void GetPosition(std::uint64_t point, double position[3]) const = 0;
 };

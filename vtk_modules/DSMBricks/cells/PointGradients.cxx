@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/cells/PointGradients.h"
 
+#include "DSMBricks/base/Float4.h"
 #include "DSMBricks/cells/CornerOrder.h"
 #include "DSMBricks/cells/ExactScale.h"
 #include "DSMBricks/cells/PointNotes.h"
@@ -10,9 +11,14 @@
 #include "DSMCore/memory/BlockArena.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <limits>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 
 namespace bricks
@@ -21,11 +27,11 @@ namespace bricks
 namespace
 {
 
-/// Corners of a cell with a function that is linear in each tetrahedron.
-struct CellCorners
+/// A point of a function that is linear in each tetrahedron.
+struct GradientPoint
 {
-  float Places[CellSource::MostCorners][3];
-  double Values[CellSource::MostCorners];
+  double Value;   ///< NaN: the point has none, or no finite place
+  float Place[4]; ///< the last is 0
 };
 
 /// Of one tetrahedron, or sums over several: gradients times volumes along three axes, and volumes, all six times.
@@ -79,43 +85,88 @@ struct alignas(32) GradientSum
 };
 static_assert(sizeof(GradientSum) == PartsOfGradient * sizeof(std::int64_t));
 
-/// Writes what a tetrahedron adds to the sums of its corners. They are in the order of their places, so that the result
-/// does not depend on how the cell names them.
-void MeasureTetrahedron(
-  const CellCorners& cell, const std::uint8_t corners[4], double parts[PartsOfGradient])
+/// Tetrahedra of a cell: numbers of corners, in the order of their places, so that the result does not depend on how
+/// the cell names them. The first corner is the same in all.
+struct CellTetrahedra
 {
-  double edges[3][3];
-  double rises[3];
-  const float* const origin = cell.Places[corners[0]];
-  for (int edge = 0; edge < 3; ++edge)
+  int Count = 0;
+  std::uint8_t Corners[MostTetrahedra][4];
+};
+
+/// Finds the tetrahedra of cells. One for each thread: cells beside one another are often divided alike.
+template <std::size_t Corners>
+class TetrahedraFinder
+{
+public:
+  const CellTetrahedra& Find(const float places[][3])
   {
-    const float* const end = cell.Places[corners[edge + 1]];
-    for (int axis = 0; axis < 3; ++axis)
+    std::uint8_t order[Corners];
+    OrderCorners<Corners>(places, order);
+    Key key;
+    std::memcpy(&key, order, sizeof(key));
+    Known& known = this->Table[(key * Key(0x9e3779b97f4a7c15u)) >> (8 * sizeof(Key) - TableBits)];
+    if (known.Order != key || !known.IsSet)
     {
-      edges[edge][axis] = static_cast<double>(end[axis]) - static_cast<double>(origin[axis]);
+      known.IsSet = true;
+      known.Order = key;
+      known.Tetrahedra.Count = Divide(order, known.Tetrahedra.Corners);
     }
-    rises[edge] = cell.Values[corners[edge + 1]] - cell.Values[corners[0]];
+    return known.Tetrahedra;
   }
-  double volume = 0.0;
-  std::fill_n(parts, 3, 0.0);
-  for (int edge = 0; edge < 3; ++edge)
+
+private:
+  static constexpr int TableBits = 8;
+  using Key = std::conditional_t<Corners == 8, std::uint64_t, std::uint32_t>;
+  static_assert(sizeof(Key) == Corners);
+  struct Known
   {
-    const double* const one = edges[(edge + 1) % 3];
-    const double* const other = edges[(edge + 2) % 3];
-    for (int axis = 0; axis < 3; ++axis)
+    Key Order = 0;
+    bool IsSet = false;
+    CellTetrahedra Tetrahedra;
+  };
+
+  static int Divide(const std::uint8_t order[Corners], std::uint8_t tetrahedra[][4])
+  {
+    if constexpr (Corners == 8)
     {
-      const int y = (axis + 1) % 3;
-      const int z = (axis + 2) % 3;
-      const double area = one[y] * other[z] - one[z] * other[y];
-      parts[axis] += rises[edge] * area;
-      volume += edge == 0 ? edges[0][axis] * area : 0.0;
+      return SplitHexahedron(order, tetrahedra);
+    }
+    else
+    {
+      std::iota(tetrahedra[0], tetrahedra[0] + 4, std::uint8_t(0));
+      return SortCorners(order, tetrahedra[0]) ? 1 : 0;
     }
   }
+
+  Known Table[1 << TableBits];
+};
+
+/// The vector product; a fourth component is not one of the vectors'.
+void Cross(const double one[4], const double other[4], double product[4])
+{
+  product[0] = one[1] * other[2] - one[2] * other[1];
+  product[1] = one[2] * other[0] - one[0] * other[2];
+  product[2] = one[0] * other[1] - one[1] * other[0];
+  product[3] = 0.0;
+}
+
+/// Writes what a tetrahedron adds to the sums of its corners, from its edges from the first of them, and by how much
+/// the value rises along each.
+void MeasureTetrahedron(
+  const double* const edges[3], const double rises[3], double parts[PartsOfGradient])
+{
+  double areas[3][4];
+  Cross(edges[1], edges[2], areas[0]);
+  Cross(edges[2], edges[0], areas[1]);
+  Cross(edges[0], edges[1], areas[2]);
+  const double volume =
+    edges[0][0] * areas[0][0] + edges[0][1] * areas[0][1] + edges[0][2] * areas[0][2];
   // A flat tetrahedron has no gradient, and others may be inside out.
   const double sign = volume > 0.0 ? 1.0 : volume < 0.0 ? -1.0 : 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    parts[axis] *= sign;
+    parts[axis] =
+      (rises[0] * areas[0][axis] + rises[1] * areas[1][axis] + rises[2] * areas[2][axis]) * sign;
   }
   parts[3] = std::abs(volume);
 }
@@ -126,22 +177,21 @@ public:
   GradientFinder(const CellSource& source, const BrickSpace& space,
     dsm::FunctionRef<double(std::uint64_t)> getValue, int threads)
     : Source(source)
-    , Space(space)
-    , GetValue(getValue)
     , Threads(threads)
     , Notes(source.GetPointCount())
   {
+    this->ReadPoints(space, getValue);
   }
 
   /// Finds how large the numbers around each of this rank's points may be.
   void FindScales()
   {
     this->ForEachCell(
-      [this](const std::uint64_t* points, auto corners, const CellCorners&,
-        const GradientBounds& bounds, std::size_t chunk)
+      [this](const std::uint64_t* points, const auto& cell, const GradientBounds& bounds,
+        std::size_t chunk, int)
       {
         const GradientScales scales(bounds);
-        for (int corner = 0; corner < corners(); ++corner)
+        for (std::size_t corner = 0; corner < cell.size(); ++corner)
         {
           this->Notes.Add(points[corner], chunk,
             [&](std::uint32_t bits) { return scales.Join(GradientScales(bits)).GetBits(); });
@@ -163,9 +213,23 @@ public:
   {
     this->Memory = dsm::BlockArena(this->Notes.GetCount() * sizeof(GradientSum));
     this->Sums = reinterpret_cast<GradientSum*>(this->Memory.GetData());
-    this->ForEachCell([this](const std::uint64_t* points, auto corners, const CellCorners& cell,
-                        const GradientBounds& bounds, std::size_t chunk)
-      { this->AddCell(points, corners, cell, bounds, chunk); });
+    const auto threads = static_cast<std::size_t>(std::max(this->Threads, 1));
+    std::vector<TetrahedraFinder<4>> ofTetrahedra(threads);
+    std::vector<TetrahedraFinder<8>> ofHexahedra(threads);
+    this->ForEachCell(
+      [&](const std::uint64_t* points, const auto& cell, const GradientBounds& bounds,
+        std::size_t chunk, int thread)
+      {
+        const auto number = static_cast<std::size_t>(thread);
+        if constexpr (std::tuple_size_v<std::decay_t<decltype(cell)>> == 8)
+        {
+          this->AddCell(ofHexahedra[number], points, cell, bounds, chunk);
+        }
+        else
+        {
+          this->AddCell(ofTetrahedra[number], points, cell, bounds, chunk);
+        }
+      });
   }
 
   std::int64_t* GetSums() { return this->Sums->Parts; }
@@ -186,114 +250,146 @@ public:
   }
 
 private:
-  template <int Count>
-  using CornerCount = std::integral_constant<int, Count>;
+  template <std::size_t Corners>
+  using CellPoints = std::array<const GradientPoint*, Corners>;
 
-  /// Calls visit(points, CornerCount, corners, bounds, chunk) for every cell that counts.
+  void ReadPoints(const BrickSpace& space, dsm::FunctionRef<double(std::uint64_t)> getValue)
+  {
+    constexpr std::size_t pointsOfChunk = std::size_t(1) << 14;
+    this->PointMemory = dsm::BlockArena(this->Notes.GetCount() * sizeof(GradientPoint));
+    this->Points = reinterpret_cast<GradientPoint*>(this->PointMemory.GetData());
+    ParallelForChunks(this->Threads, this->Notes.GetCount(), pointsOfChunk,
+      [&](std::size_t begin, std::size_t end, std::size_t, int)
+      {
+        for (std::size_t number = begin; number < end; ++number)
+        {
+          GradientPoint& point = this->Points[number];
+          double position[3];
+          this->Source.GetPosition(number, position);
+          const bool isFinite = PlaceInBrick(space, position, point.Place);
+          const double value = getValue(number);
+          point.Value =
+            isFinite && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+        }
+      });
+  }
+
+  /// Calls visit(points, CellPoints, bounds, chunk, thread) for every cell that counts.
   template <class Visit>
   void ForEachCell(const Visit& visit) const
   {
     ForEachShownCell(this->Source, this->Threads,
-      [&](std::uint64_t, const std::uint64_t* points, int corners, std::size_t chunk)
+      [&](std::uint64_t, const std::uint64_t* points, int corners, std::size_t chunk, int thread)
       {
-        corners == 4 ? this->VisitCell<4>(points, chunk, visit)
-                     : this->VisitCell<8>(points, chunk, visit);
+        corners == 4 ? this->VisitCell<4>(points, chunk, thread, visit)
+                     : this->VisitCell<8>(points, chunk, thread, visit);
       });
   }
 
-  template <int Corners, class Visit>
-  void VisitCell(const std::uint64_t* points, std::size_t chunk, const Visit& visit) const
+  template <std::size_t Corners, class Visit>
+  void VisitCell(
+    const std::uint64_t* points, std::size_t chunk, int thread, const Visit& visit) const
   {
-    CellCorners cell;
-    GradientBounds bounds;
-    if (this->ReadCell<Corners>(points, cell, bounds))
+    CellPoints<Corners> cell;
+    bool isFinite = true;
+    for (std::size_t corner = 0; corner < Corners; ++corner)
     {
-      visit(points, CornerCount<Corners>(), cell, bounds, chunk);
+      cell[corner] = this->Points + points[corner];
+      isFinite = isFinite && !std::isnan(cell[corner]->Value);
+    }
+    if (!isFinite)
+    {
+      return;
+    }
+    const GradientBounds bounds = FindBounds(cell);
+    if (std::isfinite(bounds.Gradient))
+    {
+      visit(points, cell, bounds, chunk, thread);
     }
   }
 
-  /// Returns whether the cell counts.
-  template <int Corners>
-  bool ReadCell(const std::uint64_t* points, CellCorners& cell, GradientBounds& bounds) const
+  template <std::size_t Corners>
+  static GradientBounds FindBounds(const CellPoints<Corners>& cell)
   {
-    double positions[Corners][3];
-    for (int corner = 0; corner < Corners; ++corner)
+    Float4 lower = Float4::Load(cell[0]->Place);
+    Float4 upper = lower;
+    double lowest = cell[0]->Value;
+    double highest = lowest;
+    for (std::size_t corner = 1; corner < Corners; ++corner)
     {
-      this->Source.GetPosition(points[corner], positions[corner]);
-      cell.Values[corner] = this->GetValue(points[corner]);
+      const Float4 place = Float4::Load(cell[corner]->Place);
+      lower = Min(lower, place);
+      upper = Max(upper, place);
+      lowest = std::min(lowest, cell[corner]->Value);
+      highest = std::max(highest, cell[corner]->Value);
     }
-    const BrickSpace space = this->Space; // no call in between may change it
-    bool isFinite = true;
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      isFinite = PlaceInBrick(space, positions[corner], cell.Places[corner]) && isFinite;
-    }
+    float first[4];
+    float last[4];
+    lower.Store(first);
+    upper.Store(last);
     double size[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      float lower = cell.Places[0][axis];
-      float upper = lower;
-      for (int corner = 1; corner < Corners; ++corner)
-      {
-        lower = std::min(lower, cell.Places[corner][axis]);
-        upper = std::max(upper, cell.Places[corner][axis]);
-      }
-      size[axis] = static_cast<double>(upper) - static_cast<double>(lower);
-    }
-    double lowest = cell.Values[0];
-    double highest = lowest;
-    for (int corner = 0; corner < Corners; ++corner)
-    {
-      lowest = std::min(lowest, cell.Values[corner]);
-      highest = std::max(highest, cell.Values[corner]);
-      isFinite = isFinite && std::isfinite(cell.Values[corner]);
+      size[axis] = static_cast<double>(last[axis]) - static_cast<double>(first[axis]);
     }
     // Twice the volume of a box is the largest determinant of three edges in it. A component of the gradient is one,
     // too, with values in place of an axis.
     const double face = std::max({ size[0] * size[1], size[1] * size[2], size[2] * size[0] });
-    bounds = { 2.0 * face * (highest - lowest), 2.0 * size[0] * size[1] * size[2] };
-    return isFinite && std::isfinite(bounds.Gradient);
+    return { 2.0 * face * (highest - lowest), 2.0 * size[0] * size[1] * size[2] };
   }
 
-  template <int Corners>
-  void AddCell(const std::uint64_t* points, CornerCount<Corners>, const CellCorners& cell,
-    const GradientBounds& bounds, std::size_t chunk)
+  template <std::size_t Corners>
+  void AddCell(TetrahedraFinder<Corners>& finder, const std::uint64_t* points,
+    const CellPoints<Corners>& cell, const GradientBounds& bounds, std::size_t chunk)
   {
-    std::uint8_t order[Corners];
-    OrderCorners<Corners>(cell.Places, order);
-    std::uint8_t tetrahedra[MostTetrahedra][4] = { { 0, 1, 2, 3 } };
-    int count;
-    if constexpr (Corners == 8)
+    float places[Corners][3];
+    for (std::size_t corner = 0; corner < Corners; ++corner)
     {
-      count = SplitHexahedron(order, tetrahedra);
+      std::copy_n(cell[corner]->Place, 3, places[corner]);
     }
-    else
-    {
-      count = SortCorners(order, tetrahedra[0]) ? 1 : 0;
-    }
+    const CellTetrahedra& tetrahedra = finder.Find(places);
     const GradientScales scales(bounds);
-    const double gradientFactor = scales.OfGradient().GetFactor();
-    const double volumeFactor = scales.OfVolume().GetFactor();
     std::int64_t sums[Corners][PartsOfGradient] = {};
-    for (int tetrahedron = 0; tetrahedron < count; ++tetrahedron)
+    if (tetrahedra.Count > 0)
     {
-      double parts[PartsOfGradient];
-      MeasureTetrahedron(cell, tetrahedra[tetrahedron], parts);
-      std::int64_t integers[PartsOfGradient];
-      for (int axis = 0; axis < 3; ++axis)
+      double edges[Corners][4];
+      double rises[Corners];
+      const GradientPoint& origin = *cell[tetrahedra.Corners[0][0]];
+      for (std::size_t corner = 0; corner < Corners; ++corner)
       {
-        integers[axis] = static_cast<std::int64_t>(parts[axis] * gradientFactor);
-      }
-      integers[3] = static_cast<std::int64_t>(parts[3] * volumeFactor);
-      for (const std::uint8_t corner : tetrahedra[tetrahedron])
-      {
-        for (int part = 0; part < PartsOfGradient; ++part)
+        for (int axis = 0; axis < 4; ++axis)
         {
-          sums[corner][part] += integers[part];
+          edges[corner][axis] = static_cast<double>(cell[corner]->Place[axis]) -
+            static_cast<double>(origin.Place[axis]);
+        }
+        rises[corner] = cell[corner]->Value - origin.Value;
+      }
+      const double gradientFactor = scales.OfGradient().GetFactor();
+      const double volumeFactor = scales.OfVolume().GetFactor();
+      for (int tetrahedron = 0; tetrahedron < tetrahedra.Count; ++tetrahedron)
+      {
+        const std::uint8_t* const corners = tetrahedra.Corners[tetrahedron];
+        const double* const ofTetrahedron[3] = { edges[corners[1]], edges[corners[2]],
+          edges[corners[3]] };
+        const double risesOf[3] = { rises[corners[1]], rises[corners[2]], rises[corners[3]] };
+        double parts[PartsOfGradient];
+        MeasureTetrahedron(ofTetrahedron, risesOf, parts);
+        std::int64_t integers[PartsOfGradient];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          integers[axis] = static_cast<std::int64_t>(parts[axis] * gradientFactor);
+        }
+        integers[3] = static_cast<std::int64_t>(parts[3] * volumeFactor);
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          for (int part = 0; part < PartsOfGradient; ++part)
+          {
+            sums[corners[corner]][part] += integers[part];
+          }
         }
       }
     }
-    for (int corner = 0; corner < Corners; ++corner)
+    for (std::size_t corner = 0; corner < Corners; ++corner)
     {
       this->AddToPoint(points[corner], sums[corner], scales, chunk);
     }
@@ -336,10 +432,10 @@ private:
   }
 
   const CellSource& Source;
-  const BrickSpace& Space;
-  dsm::FunctionRef<double(std::uint64_t)> GetValue;
   int Threads;
   PointNotes Notes; ///< GradientScales
+  dsm::BlockArena PointMemory;
+  GradientPoint* Points = nullptr; ///< in PointMemory
   dsm::BlockArena Memory;
   GradientSum* Sums = nullptr; ///< of points, in Memory
 };

@@ -22,8 +22,8 @@ namespace bricks
 /// has a gradient of 0. The result is the same, bit for bit, for any distribution of the cells, as long as at most 2^20
 /// tetrahedra meet in a place.
 ///
-/// `places`: of this rank's points, in the space of the bricks. `getValue(point)`: called by any thread, several times.
-/// Cells with a corner without a finite value or place do not count. Takes 40 bytes a point while it runs. Throws the
+/// `places`: of this rank's points, in the space of the bricks. `getValue(point)`: called by any thread, once a point.
+/// Cells with a corner without a finite value or place do not count. Takes 64 bytes a point while it runs. Throws the
 /// same dsm::Error on every rank.
 std::vector<PackedGradient> FindPointGradients(std::string_view what, const CellSource& source,
   const BrickSpace& space, const SharedPlaces& places,

@@ -95,15 +95,24 @@ public:
   }
 
 private:
-  static constexpr double StepsPerOctave = 4.0;
-  static constexpr double Middle = 512.0;
+  static constexpr int StepsPerOctave = 4;
+  static constexpr int Middle = 512;
 
   void AddCell(float size)
   {
     if (size > 0.0f)
     {
-      const double step = std::round(StepsPerOctave * std::log2(static_cast<double>(size)));
-      ++this->Counts[static_cast<std::size_t>(std::clamp(step + Middle, 0.0, 2.0 * Middle - 1.0))];
+      // The logarithm, rounded: the exponent, and between which roots of two the rest is.
+      constexpr double borders[] = { 1.0905077326652577, 1.2968395546510096, 1.5422108254079407,
+        1.8340080864093424 };
+      int exponent;
+      const double rest = 2.0 * std::frexp(static_cast<double>(size), &exponent);
+      int step = StepsPerOctave * (exponent - 1);
+      for (const double border : borders)
+      {
+        step += rest > border ? 1 : 0;
+      }
+      ++this->Counts[static_cast<std::size_t>(std::clamp(step + Middle, 0, 2 * Middle - 1))];
     }
   }
 
@@ -155,13 +164,15 @@ dsm::BlockId AddGridBricks(std::string_view what, const std::vector<GridBrick>& 
   return first;
 }
 
-/// Yields what the owners of bricks know of the points of each rank. Block n is what rank n gets: the number of a
-/// brick, how many of its points follow, their numbers in the brick, and those in the rank's source.
+/// Yields what the owners of bricks know of the points of other ranks. Block n is what rank n gets: the number of a
+/// brick, and for each of the rank's points in it the number in the brick, and that in the rank's source.
 class RouteSource final : public dsm::FragmentSource
 {
 public:
-  explicit RouteSource(const SortedBricks& bricks)
+  RouteSource(const SortedBricks& bricks, const dsm::Messenger& messenger)
     : Bricks(bricks)
+    , Rank(static_cast<std::uint32_t>(messenger.GetRank()))
+    , Brick(messenger.GetSize() > 1 ? 0 : bricks.Own.size())
   {
   }
 
@@ -204,55 +215,125 @@ private:
     const std::vector<std::uint32_t>& notes = this->Bricks.Notes[this->Brick++];
     for (std::size_t slot = 0; slot < notes.size() / 2; ++slot)
     {
-      this->Slots.emplace_back(notes[2 * slot], static_cast<std::uint32_t>(slot));
+      if (notes[2 * slot] != this->Rank)
+      {
+        this->Slots.emplace_back(notes[2 * slot], static_cast<std::uint32_t>(slot));
+      }
     }
     std::sort(this->Slots.rbegin(), this->Slots.rend());
   }
 
   const SortedBricks& Bricks;
-  std::size_t Brick = 0;
+  std::uint32_t Rank;
+  std::size_t Brick;
   std::vector<std::pair<dsm::BlockId, std::uint32_t>> Slots; ///< rank and slot, the last first
 };
 
+/// A rank's points in a brick, before they are put together.
+struct RoutePiece
+{
+  enum class Layout
+  {
+    Notes,  ///< rank and point of each point of the brick; other ranks' are left out
+    Words,  ///< slot and point
+    Numbers ///< points of all slots
+  };
+  dsm::BlockId Id;
+  Layout Form;
+  const std::vector<std::uint32_t>* Words;
+  std::size_t First; ///< of the numbers in Words
+  std::size_t Count; ///< of points
+
+  /// Calls visit(slot, point) for each.
+  template <class Visit>
+  void ForEach(std::uint32_t rank, const Visit& visit) const
+  {
+    const std::size_t step = this->Form == Layout::Numbers ? 1 : 2;
+    std::size_t slot = 0;
+    for (std::size_t word = this->First; word + step <= this->Words->size(); word += step, ++slot)
+    {
+      const std::uint32_t* const at = this->Words->data() + word;
+      if (this->Form == Layout::Words)
+      {
+        visit(at[0], at[1]);
+      }
+      else if (this->Form == Layout::Numbers || at[0] == rank)
+      {
+        visit(slot, at[step - 1]);
+      }
+    }
+  }
+};
+
+CornerRoutes JoinRoutes(std::vector<RoutePiece>& pieces, std::uint32_t rank, int threads)
+{
+  ParallelFor(threads, pieces.size(),
+    [&](std::size_t number, int)
+    {
+      RoutePiece& piece = pieces[number];
+      piece.Count = 0;
+      piece.ForEach(rank, [&](std::size_t, std::uint32_t) { ++piece.Count; });
+    });
+  pieces.erase(std::remove_if(pieces.begin(), pieces.end(),
+                 [](const RoutePiece& piece) { return piece.Count == 0; }),
+    pieces.end());
+  std::sort(pieces.begin(), pieces.end(),
+    [](const RoutePiece& one, const RoutePiece& other) { return one.Id < other.Id; });
+  CornerRoutes routes;
+  std::size_t points = 0;
+  for (const RoutePiece& piece : pieces)
+  {
+    routes.Bricks.push_back({ piece.Id, points });
+    points += piece.Count;
+  }
+  routes.Slots.resize(points);
+  routes.Points.resize(points);
+  ParallelFor(threads, pieces.size(),
+    [&](std::size_t number, int)
+    {
+      std::size_t at = routes.Bricks[number].Begin;
+      pieces[number].ForEach(rank,
+        [&](std::size_t slot, std::uint32_t point)
+        {
+          routes.Slots[at] = static_cast<std::uint16_t>(slot);
+          routes.Points[at++] = point;
+        });
+    });
+  return routes;
+}
+
 /// Collective.
 void ExchangeRoutes(std::string_view what, const SortedBricks& bricks,
-  const std::vector<GridBrick>& grids, dsm::BlockId firstGrid, CornerRoutes& routes,
+  const std::vector<GridBrick>& grids, dsm::BlockId firstGrid, int threads, CornerRoutes& routes,
   dsm::Messenger& messenger)
 {
-  using Piece = std::pair<std::uint32_t, std::vector<std::uint32_t>>;
-  std::vector<Piece> pieces;
-  RouteSource source(bricks);
+  std::vector<std::vector<std::uint32_t>> arrived;
+  RouteSource source(bricks, messenger);
   const auto absorb = [&](dsm::BlockId, const std::byte* bytes, std::size_t count)
   {
     std::vector<std::uint32_t> words(count / sizeof(std::uint32_t));
     std::memcpy(words.data(), bytes, words.size() * sizeof(std::uint32_t));
-    pieces.emplace_back(words.at(0), std::move(words));
+    arrived.push_back(std::move(words));
   };
   dsm::FragmentStream::RunToRanks(what, messenger, source, absorb);
   messenger.RunTogether(what,
     [&]
     {
-      std::sort(pieces.begin(), pieces.end(),
-        [](const Piece& one, const Piece& other) { return one.first < other.first; });
-      routes = CornerRoutes();
-      for (const auto& [id, words] : pieces)
+      using Layout = RoutePiece::Layout;
+      std::vector<RoutePiece> pieces;
+      for (std::size_t brick = 0; brick < bricks.Own.size(); ++brick)
       {
-        routes.Bricks.push_back({ id, routes.Points.size() });
-        for (std::size_t word = 1; word + 1 < words.size(); word += 2)
-        {
-          routes.Slots.push_back(static_cast<std::uint16_t>(words[word]));
-          routes.Points.push_back(words[word + 1]);
-        }
+        pieces.push_back({ bricks.Own[brick].Block, Layout::Notes, &bricks.Notes[brick], 0, 0 });
+      }
+      for (const std::vector<std::uint32_t>& words : arrived)
+      {
+        pieces.push_back({ words.at(0), Layout::Words, &words, 1, 0 });
       }
       for (const GridBrick& grid : grids)
       {
-        routes.Bricks.push_back({ firstGrid++, routes.Points.size() });
-        for (std::size_t slot = 0; slot < grid.Points.size(); ++slot)
-        {
-          routes.Slots.push_back(static_cast<std::uint16_t>(slot));
-          routes.Points.push_back(grid.Points[slot]);
-        }
+        pieces.push_back({ firstGrid++, Layout::Numbers, &grid.Points, 0, 0 });
       }
+      routes = JoinRoutes(pieces, static_cast<std::uint32_t>(messenger.GetRank()), threads);
     });
 }
 
@@ -300,14 +381,15 @@ std::shared_ptr<CellBricks> PublishCells(std::string_view what, const CellSource
       reader.emplace(source, corners, messenger.GetRank());
       cells = std::make_shared<CellBricks>();
     });
-  SortedBrickBuilder builder(what, *reader, settings, messenger);
+  SortedBrickBuilder builder(what, *reader, settings, messenger, progress);
   static_cast<BrickSpace&>(*cells) = builder.GetSpace();
   SortedBricks bricks = builder.Build(progress);
   std::vector<GridBrick> grids;
   messenger.RunTogether(
     what, [&] { grids = CutGrids(source, builder.GetSpace(), settings.Threads); });
   const dsm::BlockId firstGrid = AddGridBricks(what, grids, bricks, messenger);
-  ExchangeRoutes(what, bricks, grids, firstGrid, routes, messenger);
+  ExchangeRoutes(what, bricks, grids, firstGrid, settings.Threads, routes, messenger);
+  bricks.Notes.clear();
   std::optional<dsm::BlockDirectory> directory;
   std::optional<BlockSource> blocks;
   messenger.RunTogether(what,
@@ -332,7 +414,7 @@ std::shared_ptr<CellBricks> PublishCells(std::string_view what, const CellSource
       blocks.emplace(std::move(bricks.Own));
     });
   BlockSink sink;
-  const auto ofCopying = [&](double done) { progress(0.5 + 0.5 * done); };
+  const auto ofCopying = [&](double done) { progress(0.9 + 0.1 * done); };
   cells->Segment = store.Publish(what, std::move(*directory), *blocks, sink,
     progress ? dsm::FunctionRef<void(double)>(ofCopying) : dsm::FunctionRef<void(double)>(), place);
   return cells;

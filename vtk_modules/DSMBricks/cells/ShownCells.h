@@ -13,9 +13,29 @@
 namespace bricks
 {
 
-/// Calls visit(cell, points, corners, chunk) for every shown cell of this rank, in any order, by several threads at a
-/// time. `points`: the cell's corners, so many: 4 or 8. Cells of the same chunk are visited by one thread; they are the
-/// same each time. Rethrows what a call throws.
+/// Calls visit(cell, points, isShown) for cells [first, last), all in one grid or all in none, in order. `points`: of a
+/// cell that is shown.
+template <class Visit>
+void ForEachCellRead(
+  const CellSource& source, std::uint64_t first, std::uint64_t last, const Visit& visit)
+{
+  constexpr std::uint64_t cellsTogether = 64;
+  std::uint64_t points[cellsTogether][CellSource::MostCorners];
+  bool areShown[cellsTogether];
+  for (std::uint64_t begin = first; begin < last; begin += cellsTogether)
+  {
+    const std::uint64_t count = std::min(cellsTogether, last - begin);
+    source.ReadCells(begin, static_cast<std::size_t>(count), points, areShown);
+    for (std::uint64_t number = 0; number < count; ++number)
+    {
+      visit(begin + number, static_cast<const std::uint64_t*>(points[number]), areShown[number]);
+    }
+  }
+}
+
+/// Calls visit(cell, points, corners, chunk, thread) for every shown cell of this rank, in any order, by several
+/// threads at a time. `points`: the cell's corners, so many: 4 or 8. Cells of the same chunk are visited by one thread;
+/// they are the same each time. Rethrows what a call throws.
 template <class Visit>
 void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
 {
@@ -27,17 +47,16 @@ void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
   const auto visitRange = [&](std::uint64_t first, std::uint64_t last, int corners)
   {
     ParallelForChunks(threads, last - first, cellsOfChunk,
-      [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
+      [&](std::size_t begin, std::size_t end, std::size_t chunk, int thread)
       {
-        std::uint64_t points[CellSource::MostCorners];
-        for (std::uint64_t cell = first + begin; cell < first + end; ++cell)
-        {
-          if (source.IsShown(cell))
+        ForEachCellRead(source, first + begin, first + end,
+          [&](std::uint64_t cell, const std::uint64_t* points, bool isShown)
           {
-            source.GetCorners(cell, points);
-            visit(cell, points, corners, chunksBefore + chunk);
-          }
-        }
+            if (isShown)
+            {
+              visit(cell, points, corners, chunksBefore + chunk, thread);
+            }
+          });
       });
     chunksBefore += (last - first + cellsOfChunk - 1) / cellsOfChunk;
   };

@@ -2,12 +2,11 @@
 #include "DSMBricks/sorted/RecordExchange.h"
 
 #include "DSMCore/base/Error.h"
-#include "DSMCore/memory/BlockArena.h"
-#include "DSMCore/publish/SegmentPublisher.h"
+#include "DSMCore/publish/FragmentStream.h"
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
+#include <optional>
 #include <string>
 
 namespace bricks
@@ -21,27 +20,38 @@ constexpr std::uint64_t FragmentBytes = std::uint64_t(1) << 18;
 
 } // namespace
 
-RecordSource::RecordSource(
-  const RecordReader& reader, const SortedCells& cells, std::uint64_t first, std::uint64_t last)
+RecordSource::RecordSource(const RecordReader& reader, const SortedCells& cells,
+  std::uint64_t first, std::uint64_t last, const dsm::RoundRobinAssigner& owners, int rank)
   : Reader(reader)
   , Cells(cells)
   , RecordBytes(reader.GetKind().RecordBytes)
+  , FirstCell(first)
   , Cell(first)
   , LastCell(last)
+  , Owners(owners)
+  , Rank(rank)
 {
-  if (first < last)
+  this->FindOthers();
+}
+
+void RecordSource::FindOthers()
+{
+  while (this->Cell < this->LastCell && this->Owners.GetOwner(this->Cell) == this->Rank)
   {
-    this->Begin = cells.GetRange(first).first;
-    this->End = cells.GetRange(last - 1).second;
-    this->Position = this->Begin;
+    ++this->Cell;
+  }
+  if (this->Cell < this->LastCell)
+  {
+    this->Position = this->Cells.GetRange(this->Cell).first;
   }
 }
 
 bool RecordSource::Next(dsm::Fragment& fragment)
 {
-  while (this->Cell < this->LastCell && this->Position >= this->Cells.GetRange(this->Cell).second)
+  while (this->Cell < this->LastCell && this->IsDone())
   {
     ++this->Cell;
+    this->FindOthers();
   }
   if (this->Cell >= this->LastCell)
   {
@@ -64,121 +74,62 @@ bool RecordSource::Next(dsm::Fragment& fragment)
 
 double RecordSource::GetProgress() const
 {
-  return this->End > this->Begin ? static_cast<double>(this->Position - this->Begin) /
-      static_cast<double>(this->End - this->Begin)
-                                 : 1.0;
+  return this->LastCell > this->FirstCell ? static_cast<double>(this->Cell - this->FirstCell) /
+      static_cast<double>(this->LastCell - this->FirstCell)
+                                          : 1.0;
 }
 
-class RecordBlocks::Sink final : public dsm::FragmentSink
-{
-public:
-  void Begin(dsm::BlockId, std::byte*, std::size_t) override {}
-  void Absorb(dsm::BlockId id, std::byte* block, std::size_t bytes, const std::byte* fragment,
-    std::size_t fragmentBytes) override
-  {
-    std::uint64_t filled;
-    std::memcpy(&filled, block, sizeof(filled));
-    if (fragmentBytes > bytes - RecordOffset - filled)
-    {
-      throw dsm::Error("Cell " + std::to_string(id) +
-        " received more records than expected. Do all ranks run the same build?");
-    }
-    std::memcpy(block + RecordOffset + filled, fragment, fragmentBytes);
-    filled += fragmentBytes;
-    std::memcpy(block, &filled, sizeof(filled));
-  }
-  void Finish(dsm::BlockId id, std::byte* block, std::size_t bytes) override
-  {
-    std::uint64_t filled;
-    std::memcpy(&filled, block, sizeof(filled));
-    if (RecordOffset + filled != bytes)
-    {
-      throw dsm::Error("Cell " + std::to_string(id) +
-        " received fewer records than expected. Did the dataset change in the meantime?");
-    }
-  }
-};
-
-/// The memory of this rank's cells, one after the other.
-class RecordBlocks::Segment final : public dsm::BlockSegment
-{
-public:
-  Segment(std::uint32_t number, dsm::BlockDirectory&& directory, int rank, int ranks)
-    : BlockSegment(number, std::move(directory))
-    , Rank(rank)
-    , Ranks(ranks)
-    , Memory(this->GetDirectory().GetResidentBytes(rank))
-  {
-    std::size_t offset = 0;
-    for (dsm::BlockId id = 0; id < this->GetDirectory().GetCount(); ++id)
-    {
-      if (this->GetDirectory().GetOwner(id) == rank)
-      {
-        this->Offsets.push_back(offset);
-        offset += dsm::AlignBlock(this->GetDirectory().GetBytes(id));
-      }
-    }
-  }
-  std::byte* GetOwned(dsm::BlockId id) const override
-  {
-    return this->Memory.GetData() + this->Offsets[id / static_cast<dsm::BlockId>(this->Ranks)];
-  }
-  void ForEachResident(const Visit& visit) const override
-  {
-    for (std::size_t index = 0; index < this->Offsets.size(); ++index)
-    {
-      const auto id =
-        static_cast<dsm::BlockId>(this->Rank) + index * static_cast<dsm::BlockId>(this->Ranks);
-      visit(id, this->GetOwned(id), this->GetDirectory().GetBytes(id));
-    }
-  }
-  std::uint64_t GetResidentBytes() const override
-  {
-    return this->GetDirectory().GetResidentBytes(this->Rank);
-  }
-  void Seal() override {}
-
-private:
-  int Rank;
-  int Ranks;
-  dsm::BlockArena Memory;
-  std::vector<std::size_t> Offsets;
-};
-
-RecordBlocks::~RecordBlocks() = default;
-
-RecordBlocks::RecordBlocks(std::string_view what, const SortedCells& cells,
-  const RecordReader& reader, dsm::FragmentSource& source, dsm::Messenger& messenger,
+ArrivedRecords::ArrivedRecords(std::string_view what, const SortedCells& cells,
+  std::size_t recordBytes, dsm::FragmentSource& source, dsm::Messenger& messenger,
   dsm::FunctionRef<void(double)> progress)
   : Rank(messenger.GetRank())
   , Ranks(messenger.GetSize())
 {
-  std::vector<std::uint32_t> bytes;
+  std::vector<std::size_t> filled; // up to where, in Memory
+  std::optional<dsm::BlockDirectory> directory;
   messenger.RunTogether(what,
     [&]
     {
-      const RecordKind kind = reader.GetKind();
-      bytes.reserve(cells.GetCount());
-      for (std::uint64_t cell = 0; cell < cells.GetCount(); ++cell)
+      const auto first = static_cast<std::uint64_t>(this->Rank);
+      const auto step = static_cast<std::uint64_t>(this->Ranks);
+      std::size_t end = 0;
+      for (std::uint64_t cell = first; cell < cells.GetCount(); cell += step)
       {
-        const std::uint64_t needed =
-          RecordOffset + cells.GetPrimitiveCount(cell) * kind.RecordBytes;
-        if (needed > std::numeric_limits<std::uint32_t>::max() - dsm::BlockAlignment)
+        const auto [begin, last] = cells.GetRange(cell);
+        filled.push_back(end);
+        end += (cells.GetPrimitiveCount(cell) - (last - begin)) * recordBytes;
+        this->Ends.push_back(end);
+      }
+      this->Memory = dsm::BlockArena(end);
+      directory.emplace(std::vector<std::uint32_t>(cells.GetCount(), 0),
+        dsm::RoundRobinAssigner(messenger.GetSize()));
+    });
+  const auto absorb = [&](dsm::BlockId cell, const std::byte* bytes, std::size_t count)
+  {
+    const std::size_t index = cell / static_cast<std::size_t>(this->Ranks);
+    if (count > this->Ends[index] - filled[index])
+    {
+      throw dsm::Error("Cell " + std::to_string(cell) +
+        " received more records than expected. Do all ranks run the same build?");
+    }
+    std::memcpy(this->Memory.GetData() + filled[index], bytes, count);
+    filled[index] += count;
+  };
+  const dsm::FirstFailure failure =
+    dsm::FragmentStream::Run(messenger, *directory, source, absorb, progress);
+  messenger.RunTogether(what,
+    [&]
+    {
+      failure.Throw();
+      for (std::size_t index = 0; index < filled.size(); ++index)
+      {
+        if (filled[index] != this->Ends[index])
         {
-          throw dsm::Error(std::to_string(cells.GetPrimitiveCount(cell)) + " " + kind.Primitives +
-            " have the same centroid. Remove duplicate " + kind.Primitives + " or outlier points.");
+          throw dsm::Error("Cell " + std::to_string(this->GetCell(index)) +
+            " received fewer records than expected. Did the dataset change in the meantime?");
         }
-        bytes.push_back(static_cast<std::uint32_t>(needed));
       }
     });
-  const auto count = [this](const dsm::BlockDirectory& directory)
-  { return directory.GetResidentBytes(this->Rank); };
-  const auto create = [this](std::uint32_t number, dsm::BlockDirectory&& directory)
-  { return std::make_shared<Segment>(number, std::move(directory), this->Rank, this->Ranks); };
-  Sink sink;
-  this->Records =
-    dsm::SegmentPublisher(messenger, what, { count, create })
-      .Run({ std::move(bytes), dsm::RoundRobinAssigner(this->Ranks) }, source, sink, progress);
 }
 
 bool BlockSource::Next(dsm::Fragment& fragment)

@@ -6,13 +6,13 @@
 #include "DSMBricks/sorted/SortedCells.h"
 #include "DSMCore/base/Block.h"
 #include "DSMCore/base/FunctionRef.h"
-#include "DSMCore/publish/BlockSegment.h"
+#include "DSMCore/memory/BlockArena.h"
+#include "DSMCore/publish/BlockDirectory.h"
 #include "DSMCore/publish/Publication.h"
 #include "DSMCore/transport/Messenger.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -20,66 +20,66 @@
 namespace bricks
 {
 
-/// Yields the records of this rank's primitives in cells [first, last), in pieces of bounded size.
+/// Yields the records of this rank's primitives in cells [first, last) of other ranks, in pieces of bounded size. Cells
+/// belong to the ranks in turn.
 class RecordSource final : public dsm::FragmentSource
 {
 public:
-  RecordSource(
-    const RecordReader& reader, const SortedCells& cells, std::uint64_t first, std::uint64_t last);
+  RecordSource(const RecordReader& reader, const SortedCells& cells, std::uint64_t first,
+    std::uint64_t last, const dsm::RoundRobinAssigner& owners, int rank);
   bool Next(dsm::Fragment& fragment) override;
   double GetProgress() const override;
 
 private:
+  bool IsDone() const { return this->Position >= this->Cells.GetRange(this->Cell).second; }
+  /// Moves to the first of the cells from this one on that another rank owns.
+  void FindOthers();
+
   const RecordReader& Reader;
   const SortedCells& Cells;
   std::size_t RecordBytes;
+  std::uint64_t FirstCell;
   std::uint64_t Cell;
   std::uint64_t LastCell;
-  std::uint64_t Begin = 0; ///< this rank's primitives in the cells
-  std::uint64_t End = 0;
+  dsm::RoundRobinAssigner Owners;
+  int Rank;
   std::uint64_t Position = 0;
 };
 
-/// The records of the cells that this rank owns, in no order within a cell. In memory of their own,
-/// not in the store: they are read once, by their owner, whatever organization the bricks will have.
-class RecordBlocks
+/// The records that other ranks have for the cells of this rank, in no order within a cell. They are read once, by
+/// their owner, whatever organization the bricks will have, so they are not in the store. A rank's own primitives are
+/// read where they are.
+class ArrivedRecords
 {
 public:
-  /// Collective: every rank's source goes to the owners, round robin by cell. Throws dsm::Error on
-  /// every rank alike. `progress` may be empty.
-  RecordBlocks(std::string_view what, const SortedCells& cells, const RecordReader& reader,
+  /// Collective: every rank's source goes to the owners. Throws dsm::Error on every rank alike. `progress` may be
+  /// empty.
+  ArrivedRecords(std::string_view what, const SortedCells& cells, std::size_t recordBytes,
     dsm::FragmentSource& source, dsm::Messenger& messenger,
     dsm::FunctionRef<void(double)> progress);
 
-  ~RecordBlocks();
-
   /// Own cells, in order.
-  std::size_t GetCount() const
-  {
-    const std::uint64_t cells = this->Records->GetDirectory().GetCount();
-    const auto rank = static_cast<std::uint64_t>(this->Rank);
-    const auto ranks = static_cast<std::uint64_t>(this->Ranks);
-    return static_cast<std::size_t>((cells + ranks - 1 - rank) / ranks);
-  }
+  std::size_t GetCellCount() const { return this->Ends.size(); }
   std::uint64_t GetCell(std::size_t index) const
   {
     return static_cast<std::uint64_t>(this->Rank) + index * static_cast<std::uint64_t>(this->Ranks);
   }
-  const std::uint32_t* GetRecords(std::size_t index) const
+  std::size_t GetBytes(std::size_t index) const
   {
-    return reinterpret_cast<const std::uint32_t*>(
-      this->Records->GetOwned(this->GetCell(index)) + RecordOffset);
+    return this->Ends[index] - this->GetBegin(index);
+  }
+  const std::byte* GetRecords(std::size_t index) const
+  {
+    return this->Memory.GetData() + this->GetBegin(index);
   }
 
 private:
-  class Segment;
-  class Sink;
-  /// A block begins with the number of bytes of records that it has (64 bits).
-  static constexpr std::size_t RecordOffset = dsm::BlockAlignment;
+  std::size_t GetBegin(std::size_t index) const { return index == 0 ? 0 : this->Ends[index - 1]; }
 
   int Rank;
   int Ranks;
-  std::shared_ptr<dsm::BlockSegment> Records;
+  std::vector<std::size_t> Ends; ///< of own cells, in bytes
+  dsm::BlockArena Memory;
 };
 
 /// Yields whole blocks that this rank has made.

@@ -6,8 +6,7 @@
 #include "DSMBricks/base/MortonCode.h"
 #include "DSMBricks/base/ValueRange.h"
 #include "DSMBricks/layout/BrickSpace.h"
-
-#include <glm/vec3.hpp>
+#include "DSMBricks/sorted/PositionBounds.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -60,22 +59,19 @@ public:
   virtual RecordKind GetKind() const = 0;
   virtual std::uint64_t GetCount() const = 0;
 
-  /// Bounds of what else lies in the space of bricks; lower > upper: nothing does.
-  virtual void FindOtherBounds(glm::dvec3& lower, glm::dvec3& upper) const
-  {
-    lower = glm::dvec3(1.0);
-    upper = glm::dvec3(-1.0);
-  }
+  /// The bounds of all that is to lie in the space of bricks: of the primitives that are finite, and of what else there
+  /// is, in the dataset's space. `threads`: the calling one included.
+  virtual PositionBounds FindBounds(int threads) const = 0;
 
-  /// The bounds of a primitive in the dataset's space. False if they are not finite.
-  virtual bool FindBounds(std::uint64_t primitive, glm::dvec3& lower, glm::dvec3& upper) const = 0;
+  /// Sets the space of bricks, in which all below is. Called once, by one thread; `threads`: of this rank, while it
+  /// runs.
+  virtual void SetSpace(const BrickSpace& space, int threads) = 0;
 
-  /// Sets the space of bricks, in which all below is. Called once, by one thread.
-  virtual void SetSpace(const BrickSpace& space) = 0;
-
-  /// The code of the primitive's place in an order of space. False for a primitive that no ray can hit.
-  virtual bool FindCode(
-    std::uint64_t primitive, const MortonCode& order, std::uint64_t& code) const = 0;
+  /// A primitive that no ray can hit has this code.
+  static constexpr std::uint64_t NoCode = ~std::uint64_t(0);
+  /// Writes the codes of the places of primitives [begin, end) in an order of space.
+  virtual void FindCodes(std::uint64_t begin, std::uint64_t end, const MortonCode& order,
+    std::uint64_t* codes) const = 0;
 
   /// Writes the record of a primitive that has a code. A record is a function of the primitive alone, not of the
   /// rank or the order in which it came.

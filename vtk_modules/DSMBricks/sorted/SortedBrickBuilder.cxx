@@ -2,17 +2,15 @@
 #include "DSMBricks/sorted/SortedBrickBuilder.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/SharedProgress.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/HostMemory.h"
 #include "DSMCore/publish/ConcurrentFragmentSource.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <string>
 
 namespace bricks
@@ -21,7 +19,11 @@ namespace bricks
 namespace
 {
 
-constexpr std::size_t ChunkSize = std::size_t(1) << 16;
+/// Approximate shares of the time: bounds, sorting, records of other ranks, building.
+constexpr double EndOfBounds = 0.05;
+constexpr double EndOfSorting = 0.2;
+constexpr double EndOfRecords = 0.3;
+constexpr double EndOfBricks = 0.9;
 
 /// Beyond this, products of coordinates leave the range of floats; bricks have them in a larger unit.
 constexpr double LargestUnscaled = 1e18;
@@ -31,18 +33,6 @@ constexpr double LargestCoordinate = 1e30;
 
 /// Memory for each primitive of a rank's own piece during sorting, in bytes.
 constexpr double OwnPrimitiveBytes = 32.0;
-
-struct Bounds
-{
-  glm::dvec3 Lower{ std::numeric_limits<double>::infinity() };
-  glm::dvec3 Upper{ -std::numeric_limits<double>::infinity() };
-
-  void Add(const Bounds& other)
-  {
-    this->Lower = glm::min(this->Lower, other.Lower);
-    this->Upper = glm::max(this->Upper, other.Upper);
-  }
-};
 
 /// Summary of a brick, for messages between ranks.
 struct BrickSummary
@@ -58,7 +48,8 @@ struct BrickSummary
 } // namespace
 
 SortedBrickBuilder::SortedBrickBuilder(std::string_view what, RecordReader& reader,
-  const SortedBrickSettings& settings, dsm::Messenger& messenger)
+  const SortedBrickSettings& settings, dsm::Messenger& messenger,
+  dsm::FunctionRef<void(double)> progress)
   : What(what)
   , Reader(reader)
   , Kind(reader.GetKind())
@@ -76,8 +67,10 @@ SortedBrickBuilder::SortedBrickBuilder(std::string_view what, RecordReader& read
   this->LargestCount =
     static_cast<std::uint32_t>(std::clamp(1.4 * this->Settings.BrickBytes / this->Kind.BrickBytes,
       1.0, static_cast<double>(this->Kind.LargestCount)));
-  this->Cells.emplace(
-    this->Reader, this->Order, this->LargestCount, this->Settings.Threads, this->Messages);
+  const auto ofSorting = [&](double done)
+  { progress(EndOfBounds + (EndOfSorting - EndOfBounds) * done); };
+  this->Cells.emplace(this->Reader, this->Order, this->LargestCount, this->Settings.Threads,
+    this->Messages, progress ? dsm::FunctionRef<void(double)>(ofSorting) : progress);
   for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
   {
     this->Count += this->Cells->GetPrimitiveCount(cell);
@@ -93,10 +86,14 @@ void SortedBrickBuilder::CheckMemory()
       const std::uint64_t available = this->Settings.MemoryBytes > 0
         ? this->Settings.MemoryBytes
         : dsm::GetAvailableHostMemory() / static_cast<std::uint64_t>(ranksOnHost);
-      const double own = OwnPrimitiveBytes * static_cast<double>(this->Reader.GetCount());
-      const double each = static_cast<double>(this->Kind.RecordBytes) + this->Kind.BrickBytes;
+      const auto mine = static_cast<double>(this->Reader.GetCount());
+      const double own = OwnPrimitiveBytes * mine;
       const auto all = static_cast<double>(this->GivenCount);
-      const double share = all * each / this->Messages.GetSize();
+      const double ofRank = all / this->Messages.GetSize();
+      // Only records of other ranks' primitives are kept.
+      const auto recordBytes = static_cast<double>(this->Kind.RecordBytes);
+      const double share =
+        ofRank * this->Kind.BrickBytes + std::min(ofRank, all - mine) * recordBytes;
       if (own + share > static_cast<double>(available))
       {
         const std::string dataset = this->Kind.Dataset;
@@ -106,7 +103,8 @@ void SortedBrickBuilder::CheckMemory()
           dsm::FormatMebibytes(static_cast<std::uint64_t>(own + share)) + ", but has " +
           dsm::FormatMebibytes(available) + ". Use at least " +
           std::to_string(static_cast<std::uint64_t>(
-            std::ceil(all * (OwnPrimitiveBytes + each) / static_cast<double>(available)))) +
+            std::ceil(all * (OwnPrimitiveBytes + recordBytes + this->Kind.BrickBytes) /
+              static_cast<double>(available)))) +
           " ranks with as much memory, each with a part of the " + dataset + ", or a " + dataset +
           " with fewer " + primitives + ".");
       }
@@ -115,46 +113,18 @@ void SortedBrickBuilder::CheckMemory()
 
 void SortedBrickBuilder::FindSpace()
 {
-  Bounds mine;
-  this->Messages.RunTogether(this->What,
-    [&]
-    {
-      std::vector<Bounds> ofThread(this->Settings.Threads);
-      ParallelForChunks(this->Settings.Threads, this->Reader.GetCount(), ChunkSize,
-        [&](std::size_t begin, std::size_t end, std::size_t, int thread)
-        {
-          Bounds bounds;
-          for (std::size_t primitive = begin; primitive < end; ++primitive)
-          {
-            Bounds own;
-            if (this->Reader.FindBounds(primitive, own.Lower, own.Upper))
-            {
-              bounds.Add(own);
-            }
-          }
-          ofThread[thread].Add(bounds);
-        });
-      for (const Bounds& bounds : ofThread)
-      {
-        mine.Add(bounds);
-      }
-      Bounds others;
-      this->Reader.FindOtherBounds(others.Lower, others.Upper);
-      if (others.Lower.x <= others.Upper.x)
-      {
-        mine.Add(others);
-      }
-    });
-  Bounds all;
-  for (const Bounds& bounds : this->Messages.AllGatherValue(mine))
+  PositionBounds all;
+  for (const PositionBounds& bounds : this->Messages.GatherValueTogether(
+         this->What, [&] { return this->Reader.FindBounds(this->Settings.Threads); }))
   {
     all.Add(bounds);
   }
-  if (all.Lower.x <= all.Upper.x)
+  if (!all.IsEmpty())
   {
     this->SetSpace(all.Lower, all.Upper);
   }
-  this->Reader.SetSpace(this->Space);
+  this->Messages.RunTogether(
+    this->What, [&] { this->Reader.SetSpace(this->Space, this->Settings.Threads); });
 }
 
 void SortedBrickBuilder::SetSpace(const glm::dvec3& lower, const glm::dvec3& upper)
@@ -202,12 +172,14 @@ void SortedBrickBuilder::SetSpace(const glm::dvec3& lower, const glm::dvec3& upp
 std::unique_ptr<dsm::FragmentSource> SortedBrickBuilder::CreateRecordSource() const
 {
   std::vector<std::unique_ptr<dsm::FragmentSource>> sources;
-  const std::uint64_t threads = static_cast<std::uint64_t>(this->Settings.Threads);
+  const std::uint64_t threads =
+    this->Messages.GetSize() > 1 ? static_cast<std::uint64_t>(this->Settings.Threads) : 0;
   const std::uint64_t cells = this->Cells->GetCount();
   for (std::uint64_t thread = 0; thread < threads; ++thread)
   {
-    sources.push_back(std::make_unique<RecordSource>(
-      this->Reader, *this->Cells, cells * thread / threads, cells * (thread + 1) / threads));
+    sources.push_back(std::make_unique<RecordSource>(this->Reader, *this->Cells,
+      cells * thread / threads, cells * (thread + 1) / threads,
+      dsm::RoundRobinAssigner(this->Messages.GetSize()), this->Messages.GetRank()));
   }
   return std::make_unique<dsm::ConcurrentFragmentSource>(std::move(sources));
 }
@@ -215,15 +187,16 @@ std::unique_ptr<dsm::FragmentSource> SortedBrickBuilder::CreateRecordSource() co
 SortedBricks SortedBrickBuilder::Build(dsm::FunctionRef<void(double)> progress)
 {
   using Progress = dsm::FunctionRef<void(double)>;
-  // Approximate shares of the time: reading, building, copying.
-  const auto ofReading = [&](double done) { progress(0.2 + 0.3 * done); };
+  const auto ofReading = [&](double done)
+  { progress(EndOfSorting + (EndOfRecords - EndOfSorting) * done); };
   BricksOfCells bricksOfCells;
   {
     std::unique_ptr<dsm::FragmentSource> source;
     this->Messages.RunTogether(this->What, [&] { source = this->CreateRecordSource(); });
-    const RecordBlocks records(this->What, *this->Cells, this->Reader, *source, this->Messages,
-      progress ? Progress(ofReading) : Progress());
-    this->Messages.RunTogether(this->What, [&] { bricksOfCells = this->BuildOwnBricks(records); });
+    const ArrivedRecords records(this->What, *this->Cells, this->Kind.RecordBytes, *source,
+      this->Messages, progress ? Progress(ofReading) : Progress());
+    this->Messages.RunTogether(
+      this->What, [&] { bricksOfCells = this->BuildOwnBricks(records, progress); });
   }
   SortedBricks bricks = this->GatherBricks(std::move(bricksOfCells));
   this->Cells.reset();
@@ -231,19 +204,34 @@ SortedBricks SortedBrickBuilder::Build(dsm::FunctionRef<void(double)> progress)
 }
 
 SortedBrickBuilder::BricksOfCells SortedBrickBuilder::BuildOwnBricks(
-  const RecordBlocks& records) const
+  const ArrivedRecords& arrived, dsm::FunctionRef<void(double)> progress) const
 {
-  BricksOfCells bricks(records.GetCount());
-  std::vector<std::unique_ptr<RecordBrickBuilder>> builders(this->Settings.Threads);
+  BricksOfCells bricks(arrived.GetCellCount());
+  const auto threads = static_cast<std::size_t>(this->Settings.Threads);
+  std::vector<std::unique_ptr<RecordBrickBuilder>> builders(threads);
+  std::vector<std::vector<std::uint32_t>> recordsOfThread(threads);
   for (auto& builder : builders)
   {
     builder = this->Reader.CreateBuilder(this->Order, this->LargestCount);
   }
+  const std::size_t words = this->Kind.RecordBytes / sizeof(std::uint32_t);
+  SharedProgress advance(progress, EndOfRecords, EndOfBricks, bricks.size());
   ParallelFor(this->Settings.Threads, bricks.size(),
     [&](std::size_t index, int thread)
     {
-      bricks[index] = builders[thread]->Build(
-        records.GetRecords(index), this->Cells->GetPrimitiveCount(records.GetCell(index)));
+      const std::uint64_t cell = arrived.GetCell(index);
+      const std::size_t count = this->Cells->GetPrimitiveCount(cell);
+      std::vector<std::uint32_t>& records = recordsOfThread[static_cast<std::size_t>(thread)];
+      records.resize(std::max(records.size(), count * words));
+      std::uint32_t* record = records.data();
+      const auto [begin, end] = this->Cells->GetRange(cell);
+      for (std::uint64_t own = begin; own < end; ++own, record += words)
+      {
+        this->Reader.ReadRecord(this->Cells->GetPrimitive(own), record);
+      }
+      std::memcpy(record, arrived.GetRecords(index), arrived.GetBytes(index));
+      bricks[index] = builders[static_cast<std::size_t>(thread)]->Build(records.data(), count);
+      advance.Add(thread);
     });
   return bricks;
 }

@@ -54,8 +54,10 @@ class SortedBrickBuilder
 {
 public:
   /// Finds the space of the bricks, and sorts the primitives. `what` and `reader` must live as long as the builder.
+  /// `progress`, which may be empty here and below, receives up to 0.2; what it throws ends the work on all ranks.
   SortedBrickBuilder(std::string_view what, RecordReader& reader,
-    const SortedBrickSettings& settings, dsm::Messenger& messenger);
+    const SortedBrickSettings& settings, dsm::Messenger& messenger,
+    dsm::FunctionRef<void(double)> progress = {});
 
   const BrickSpace& GetSpace() const { return this->Space; }
   /// Primitives of all ranks, and how many of them rays can hit.
@@ -63,7 +65,7 @@ public:
   std::uint64_t GetCount() const { return this->Count; }
 
   /// Builds the bricks, each on the rank that owns its cell, and the hierarchy over the bricks of all, and publishes
-  /// the bricks. Once. `progress` may be empty.
+  /// the bricks. Once. `progress` receives 0.2 to 1.
   template <class Store, bool HasRanges>
   std::shared_ptr<dsm::BlockSegment> Publish(
     Store& store, BrickHierarchy<HasRanges>& hierarchy, dsm::FunctionRef<void(double)> progress)
@@ -81,7 +83,7 @@ public:
       progress ? dsm::FunctionRef<void(double)>(ofCopying) : dsm::FunctionRef<void(double)>());
   }
 
-  /// Builds the bricks, each on the rank that owns its cell. Once. `progress`, which may be empty, receives 0.2 to 0.5.
+  /// Builds the bricks, each on the rank that owns its cell. Once. `progress` receives 0.2 to 0.9.
   SortedBricks Build(dsm::FunctionRef<void(double)> progress);
 
 private:
@@ -92,7 +94,8 @@ private:
   void FindSpace();
   void SetSpace(const glm::dvec3& lower, const glm::dvec3& upper);
   std::unique_ptr<dsm::FragmentSource> CreateRecordSource() const;
-  BricksOfCells BuildOwnBricks(const RecordBlocks& records) const;
+  BricksOfCells BuildOwnBricks(
+    const ArrivedRecords& arrived, dsm::FunctionRef<void(double)> progress) const;
   SortedBricks GatherBricks(BricksOfCells bricksOfCells);
 
   std::string_view What;

@@ -2,9 +2,11 @@
 #include "DSMBricks/sorted/SortedCells.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/SharedProgress.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <functional>
 
 namespace bricks
@@ -15,10 +17,10 @@ namespace
 
 constexpr const char* What = "Sorting primitives";
 
-/// Behind all codes.
-constexpr std::uint64_t NoCode = ~std::uint64_t(0);
+constexpr std::size_t KeyChunk = std::size_t(1) << 14;
 
-constexpr std::size_t KeyChunk = std::size_t(1) << 16;
+/// Part of the time that reading the keys takes.
+constexpr double ShareOfReading = 0.6;
 
 /// Bits that are counted in the first round, and in each further one.
 constexpr int FirstBits = 12;
@@ -30,43 +32,57 @@ constexpr std::size_t MostCells = std::size_t(1) << 14;
 } // namespace
 
 SortedCells::SortedCells(const RecordReader& reader, const MortonCode& order,
-  std::uint64_t largestCount, int threads, dsm::Messenger& messenger)
+  std::uint64_t largestCount, int threads, dsm::Messenger& messenger,
+  dsm::FunctionRef<void(double)> progress)
 {
   messenger.RunTogether(What,
     [&]
     {
-      this->ReadKeys(reader, order, threads);
-      this->SortKeys(threads);
+      this->ReadKeys(reader, order, threads, progress);
+      this->SortKeys(threads, progress);
     });
   this->FindCells(largestCount, messenger);
 }
 
-void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, int threads)
+void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, int threads,
+  dsm::FunctionRef<void(double)> progress)
 {
   const std::uint64_t count = reader.GetCount();
-  this->Keys.resize(count);
+  this->Memory = dsm::BlockArena(count * sizeof(Key));
+  this->Keys = reinterpret_cast<Key*>(this->Memory.GetData());
+  this->KeyCount = count;
+  std::atomic<bool> isAnyLeftOut{ false };
+  SharedProgress advance(progress, 0.0, ShareOfReading, count);
   ParallelForChunks(threads, count, KeyChunk,
-    [&](std::size_t begin, std::size_t end, std::size_t, int)
+    [&](std::size_t begin, std::size_t end, std::size_t, int thread)
     {
+      std::vector<std::uint64_t> codes(end - begin);
+      reader.FindCodes(begin, end, order, codes.data());
       for (std::size_t primitive = begin; primitive < end; ++primitive)
       {
-        std::uint64_t code = 0;
-        const bool canBeHit = reader.FindCode(primitive, order, code);
-        this->Keys[primitive] = { canBeHit ? code : NoCode, primitive };
+        this->Keys[primitive] = { codes[primitive - begin], primitive };
       }
+      if (std::find(codes.begin(), codes.end(), RecordReader::NoCode) != codes.end())
+      {
+        isAnyLeftOut = true;
+      }
+      advance.Add(thread, end - begin);
     });
-  const auto kept = std::remove_if(
-    this->Keys.begin(), this->Keys.end(), [](const Key& key) { return key.Code == NoCode; });
-  this->Keys.erase(kept, this->Keys.end());
+  if (isAnyLeftOut)
+  {
+    const Key* const end = std::remove_if(this->Keys, this->Keys + count,
+      [](const Key& key) { return key.Code == RecordReader::NoCode; });
+    this->KeyCount = static_cast<std::size_t>(end - this->Keys);
+  }
 }
 
-void SortedCells::SortKeys(int threads)
+void SortedCells::SortKeys(int threads, dsm::FunctionRef<void(double)> progress)
 {
   // One pass over the highest bits, then the buckets by themselves.
   constexpr int bucketBits = 12;
   constexpr std::size_t buckets = std::size_t(1) << bucketBits;
   const auto bucketOf = [](const Key& key) { return key.Code >> (MortonCode::Bits - bucketBits); };
-  const std::size_t count = this->Keys.size();
+  const std::size_t count = this->KeyCount;
   const std::size_t chunkSize = std::max(KeyChunk, count / (4 * threads) + 1);
   const std::size_t chunks = (count + chunkSize - 1) / chunkSize;
   std::vector<std::array<std::uint64_t, buckets>> places(chunks);
@@ -89,7 +105,8 @@ void SortedCells::SortKeys(int threads)
     }
     bounds[bucket + 1] = place;
   }
-  std::vector<Key> sorted(count);
+  dsm::BlockArena memory(count * sizeof(Key));
+  Key* const sorted = reinterpret_cast<Key*>(memory.GetData());
   ParallelForChunks(threads, count, chunkSize,
     [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
     {
@@ -98,26 +115,29 @@ void SortedCells::SortKeys(int threads)
         sorted[places[chunk][bucketOf(this->Keys[index])]++] = this->Keys[index];
       }
     });
+  SharedProgress advance(progress, ShareOfReading, 1.0, buckets);
   ParallelFor(threads, buckets,
-    [&](std::size_t bucket, int)
+    [&](std::size_t bucket, int thread)
     {
-      std::sort(sorted.begin() + bounds[bucket], sorted.begin() + bounds[bucket + 1],
+      std::sort(sorted + bounds[bucket], sorted + bounds[bucket + 1],
         [](const Key& a, const Key& b) { return a.Code < b.Code; });
+      advance.Add(thread);
     });
-  this->Keys = std::move(sorted);
+  this->Memory = std::move(memory);
+  this->Keys = sorted;
 }
 
 std::vector<std::uint64_t> SortedCells::Divide(const Cell& cell, int bits) const
 {
   const std::size_t parts = std::size_t(1) << bits;
   std::vector<std::uint64_t> bounds(parts + 1, cell.Begin);
-  const auto end = this->Keys.begin() + cell.End;
+  const Key* const end = this->Keys + cell.End;
   for (std::size_t part = 1; part < parts; ++part)
   {
     const std::uint64_t code = cell.Code + (part << (MortonCode::Bits - cell.Bits - bits));
-    const auto first = std::lower_bound(this->Keys.begin() + bounds[part - 1], end, code,
+    const Key* const first = std::lower_bound<const Key*>(this->Keys + bounds[part - 1], end, code,
       [](const Key& key, std::uint64_t value) { return key.Code < value; });
-    bounds[part] = static_cast<std::uint64_t>(first - this->Keys.begin());
+    bounds[part] = static_cast<std::uint64_t>(first - this->Keys);
   }
   bounds[parts] = cell.End;
   return bounds;
@@ -141,9 +161,9 @@ void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenge
       this->Cells.push_back(cell);
     }
   };
-  messenger.RunTogether(What, [&] { counts.assign(1, this->Keys.size()); });
+  messenger.RunTogether(What, [&] { counts.assign(1, this->KeyCount); });
   messenger.Sum(counts);
-  messenger.RunTogether(What, [&] { add({ 0, 0, 0, this->Keys.size(), counts.front() }); });
+  messenger.RunTogether(What, [&] { add({ 0, 0, 0, this->KeyCount, counts.front() }); });
   for (int step = FirstBits; !next.empty(); step = FurtherBits)
   {
     open = std::exchange(next, {});

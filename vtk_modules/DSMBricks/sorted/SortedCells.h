@@ -4,8 +4,11 @@
 
 #include "DSMBricks/base/MortonCode.h"
 #include "DSMBricks/sorted/RecordReader.h"
+#include "DSMCore/base/FunctionRef.h"
+#include "DSMCore/memory/BlockArena.h"
 #include "DSMCore/transport/Messenger.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -21,9 +24,9 @@ namespace bricks
 class SortedCells
 {
 public:
-  /// Collective. Throws dsm::Error on every rank alike.
+  /// Collective. Throws dsm::Error on every rank alike. `progress` may be empty.
   SortedCells(const RecordReader& reader, const MortonCode& order, std::uint64_t largestCount,
-    int threads, dsm::Messenger& messenger);
+    int threads, dsm::Messenger& messenger, dsm::FunctionRef<void(double)> progress);
 
   /// Cells are numbered along the curve; none is empty.
   std::uint64_t GetCount() const { return this->Cells.size(); }
@@ -51,14 +54,17 @@ private:
     std::uint64_t Count; ///< over all ranks
   };
 
-  void ReadKeys(const RecordReader& reader, const MortonCode& order, int threads);
-  void SortKeys(int threads);
+  void ReadKeys(const RecordReader& reader, const MortonCode& order, int threads,
+    dsm::FunctionRef<void(double)> progress);
+  void SortKeys(int threads, dsm::FunctionRef<void(double)> progress);
   void FindCells(std::uint64_t largestCount, dsm::Messenger& messenger);
   /// Returns the begins of the parts of a cell that share `bits` more bits, and the end of the last
   /// part.
   std::vector<std::uint64_t> Divide(const Cell& cell, int bits) const;
 
-  std::vector<Key> Keys;
+  dsm::BlockArena Memory;
+  Key* Keys = nullptr; ///< in Memory
+  std::size_t KeyCount = 0;
   std::vector<Cell> Cells;
 };
 
