@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/SharedProgress.h"
 #include "DSMBricks/cells/CellBrick.h"
 #include "DSMBricks/cells/PublishCells.h"
 #include "DSMBricks/layout/FillValues.h"
@@ -23,11 +24,28 @@ namespace
 
 constexpr float NoValue = std::numeric_limits<float>::quiet_NaN();
 
-/// Yields this rank's values for each brick: their numbers in it, the values, and their gradients, if there are any.
-class ValueSource final : public dsm::FragmentSource
+/// Approximate shares of the time: values for other ranks, and their blocks.
+constexpr double EndOfMoving = 0.2;
+constexpr double EndOfWriting = 0.8;
+
+/// Values at points of a brick, by the points' numbers in it.
+struct BrickPoints
+{
+  std::vector<float> Values;
+  std::vector<PackedGradient> Gradients; ///< or none
+
+  void Reset(std::size_t points, bool hasGradients)
+  {
+    this->Values.assign(points, NoValue);
+    this->Gradients.assign(hasGradients ? points : 0, PackedGradient());
+  }
+};
+
+/// What this rank has for bricks: the values of its points, and their gradients, if there are any.
+class OwnValues
 {
 public:
-  ValueSource(const CornerRoutes& routes, dsm::FunctionRef<double(std::uint64_t)> getValue,
+  OwnValues(const CornerRoutes& routes, dsm::FunctionRef<double(std::uint64_t)> getValue,
     const std::vector<PackedGradient>& gradients, bool hasGradients)
     : Routes(routes)
     , GetValue(getValue)
@@ -36,90 +54,136 @@ public:
   {
   }
 
+  std::size_t GetBrickCount() const { return this->Routes.Bricks.size(); }
+  dsm::BlockId GetBrick(std::size_t number) const { return this->Routes.Bricks[number].Id; }
+  /// Calls visit(slot, value, gradient) for this rank's points in a brick. Any thread.
+  template <class Visit>
+  void ForEachPoint(std::size_t brick, const Visit& visit) const
+  {
+    const std::size_t end = this->GetEnd(brick);
+    for (std::size_t entry = this->Routes.Bricks[brick].Begin; entry < end; ++entry)
+    {
+      const std::uint32_t point = this->Routes.Points[entry];
+      const auto read = static_cast<float>(this->GetValue(point));
+      visit(this->Routes.Slots[entry], std::isfinite(read) ? read + 0.0f : NoValue,
+        this->HasGradients ? this->Gradients[point] : PackedGradient());
+    }
+  }
+  /// The same for a brick of that number, if this rank has points in it.
+  template <class Visit>
+  void ForEachPointOf(dsm::BlockId id, const Visit& visit) const
+  {
+    const auto brick = std::lower_bound(this->Routes.Bricks.begin(), this->Routes.Bricks.end(), id,
+      [](const CornerRoutes::Brick& one, dsm::BlockId number) { return one.Id < number; });
+    if (brick != this->Routes.Bricks.end() && brick->Id == id)
+    {
+      this->ForEachPoint(static_cast<std::size_t>(brick - this->Routes.Bricks.begin()), visit);
+    }
+  }
+  std::size_t CountPoints(std::size_t brick) const
+  {
+    return this->GetEnd(brick) - this->Routes.Bricks[brick].Begin;
+  }
+
+private:
+  std::size_t GetEnd(std::size_t brick) const
+  {
+    return brick + 1 < this->Routes.Bricks.size() ? this->Routes.Bricks[brick + 1].Begin
+                                                  : this->Routes.Points.size();
+  }
+
+  const CornerRoutes& Routes;
+  dsm::FunctionRef<double(std::uint64_t)> GetValue;
+  const std::vector<PackedGradient>& Gradients;
+  bool HasGradients;
+};
+
+/// Yields this rank's values for each brick of another rank: the points' numbers in it, the values, and their
+/// gradients, if there are any.
+class ValueSource final : public dsm::FragmentSource
+{
+public:
+  ValueSource(const OwnValues& own, bool hasGradients, const dsm::BlockDirectory& owners, int rank)
+    : Own(own)
+    , HasGradients(hasGradients)
+    , Owners(owners)
+    , Rank(rank)
+  {
+  }
+
   bool Next(dsm::Fragment& fragment) override
   {
-    if (this->Brick == this->Routes.Bricks.size())
+    while (this->Brick < this->Own.GetBrickCount() &&
+      this->Owners.GetOwner(this->Own.GetBrick(this->Brick)) == this->Rank)
+    {
+      ++this->Brick;
+    }
+    if (this->Brick == this->Own.GetBrickCount())
     {
       return false;
     }
-    const std::size_t begin = this->Routes.Bricks[this->Brick].Begin;
-    const std::size_t end = this->Brick + 1 < this->Routes.Bricks.size()
-      ? this->Routes.Bricks[this->Brick + 1].Begin
-      : this->Routes.Points.size();
-    const std::size_t count = end - begin;
-    fragment.Block = this->Routes.Bricks[this->Brick++].Id;
+    const std::size_t count = this->Own.CountPoints(this->Brick);
+    fragment.Block = this->Own.GetBrick(this->Brick);
     fragment.Bytes.resize(count * CountBytes(this->HasGradients));
-    std::byte* const slots = fragment.Bytes.data();
-    std::byte* const values = slots + count * sizeof(std::uint16_t);
-    std::byte* const gradients = values + count * sizeof(float);
-    std::memcpy(slots, this->Routes.Slots.data() + begin, count * sizeof(std::uint16_t));
-    for (std::size_t number = 0; number < count; ++number)
-    {
-      const std::uint32_t point = this->Routes.Points[begin + number];
-      const auto read = static_cast<float>(this->GetValue(point));
-      const float value = std::isfinite(read) ? read + 0.0f : NoValue;
-      std::memcpy(values + number * sizeof(value), &value, sizeof(value));
-      if (this->HasGradients)
+    std::byte* slots = fragment.Bytes.data();
+    std::byte* values = slots + count * sizeof(std::uint16_t);
+    std::byte* gradients = values + count * sizeof(float);
+    this->Own.ForEachPoint(this->Brick++,
+      [&](std::uint16_t slot, float value, const PackedGradient& gradient)
       {
-        std::memcpy(gradients + number * sizeof(PackedGradient), &this->Gradients[point],
-          sizeof(PackedGradient));
-      }
-    }
+        Write(slot, slots);
+        Write(value, values);
+        if (this->HasGradients)
+        {
+          Write(gradient, gradients);
+        }
+      });
     return true;
   }
   double GetProgress() const override
   {
-    return this->Routes.Bricks.empty()
+    return this->Own.GetBrickCount() == 0
       ? 1.0
-      : static_cast<double>(this->Brick) / static_cast<double>(this->Routes.Bricks.size());
+      : static_cast<double>(this->Brick) / static_cast<double>(this->Own.GetBrickCount());
   }
 
+  /// Puts the values of a fragment where they belong.
+  static void Read(const std::vector<std::byte>& fragment, bool hasGradients, BrickPoints& points)
+  {
+    const std::size_t count = fragment.size() / CountBytes(hasGradients);
+    const std::byte* const values = fragment.data() + count * sizeof(std::uint16_t);
+    const std::byte* const gradients = values + count * sizeof(float);
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      std::uint16_t slot;
+      std::memcpy(&slot, fragment.data() + number * sizeof(slot), sizeof(slot));
+      std::memcpy(&points.Values.at(slot), values + number * sizeof(float), sizeof(float));
+      if (hasGradients)
+      {
+        std::memcpy(&points.Gradients.at(slot), gradients + number * sizeof(PackedGradient),
+          sizeof(PackedGradient));
+      }
+    }
+  }
+
+private:
   /// Bytes of each value in a fragment.
   static std::size_t CountBytes(bool hasGradients)
   {
     return sizeof(std::uint16_t) + sizeof(float) + (hasGradients ? sizeof(PackedGradient) : 0);
   }
+  template <class Item>
+  static void Write(const Item& item, std::byte*& to)
+  {
+    std::memcpy(to, &item, sizeof(item));
+    to += sizeof(item);
+  }
 
-private:
-  const CornerRoutes& Routes;
-  dsm::FunctionRef<double(std::uint64_t)> GetValue;
-  const std::vector<PackedGradient>& Gradients;
+  const OwnValues& Own;
   bool HasGradients;
+  const dsm::BlockDirectory& Owners;
+  int Rank;
   std::size_t Brick = 0;
-};
-
-/// What arrives for a brick that this rank owns, by the points' numbers in it.
-struct Arrived
-{
-  std::vector<float> Values;
-  std::vector<PackedGradient> Gradients;
-
-  void Absorb(const std::byte* bytes, std::size_t size, bool hasGradients)
-  {
-    const std::size_t count = size / ValueSource::CountBytes(hasGradients);
-    const std::byte* const values = bytes + count * sizeof(std::uint16_t);
-    const std::byte* const gradients = values + count * sizeof(float);
-    for (std::size_t number = 0; number < count; ++number)
-    {
-      std::uint16_t slot;
-      std::memcpy(&slot, bytes + number * sizeof(slot), sizeof(slot));
-      this->Reach(slot + std::size_t(1), hasGradients);
-      std::memcpy(&this->Values[slot], values + number * sizeof(float), sizeof(float));
-      if (hasGradients)
-      {
-        std::memcpy(&this->Gradients[slot], gradients + number * sizeof(PackedGradient),
-          sizeof(PackedGradient));
-      }
-    }
-  }
-  void Reach(std::size_t count, bool hasGradients)
-  {
-    if (this->Values.size() < count)
-    {
-      this->Values.resize(count, NoValue);
-      this->Gradients.resize(hasGradients ? count : 0);
-    }
-  }
 };
 
 std::uint32_t Align(std::size_t bytes)
@@ -168,12 +232,11 @@ private:
   float Step;
 };
 
-/// Writes the values of a brick. `arrived` is completed.
+/// Writes the values of a brick.
 std::vector<std::byte> WriteValues(
-  const CellBrick& brick, Arrived& arrived, bool hasGradients, IsovalueSurvey& survey)
+  const CellBrick& brick, const BrickPoints& points, bool hasGradients, IsovalueSurvey& survey)
 {
   const CellBrickHeader& header = brick.GetHeader();
-  arrived.Reach(header.Points, hasGradients);
   std::vector<ValueRange> groups(header.Groups, ValueRange::GetEmpty());
   ValueRange all = ValueRange::GetEmpty();
   for (std::uint32_t group = 0; group < header.Groups; ++group)
@@ -186,7 +249,7 @@ std::vector<std::byte> WriteValues(
       bool isWhole = true;
       for (int corner = 0; corner < header.Corners; ++corner)
       {
-        const float value = arrived.Values[corners[cell][corner]];
+        const float value = points.Values[corners[cell][corner]];
         isWhole = isWhole && !std::isnan(value);
         range.Add({ value, value });
       }
@@ -212,11 +275,11 @@ std::vector<std::byte> WriteValues(
   values.Step = scale.GetStep();
   std::vector<std::byte> bytes(values.BlockBytes);
   std::memcpy(bytes.data(), &values, sizeof(values));
-  std::memcpy(bytes.data() + CellValueHeader::ValueOffset, arrived.Values.data(),
+  std::memcpy(bytes.data() + CellValueHeader::ValueOffset, points.Values.data(),
     header.Points * sizeof(float));
   if (hasGradients)
   {
-    std::memcpy(bytes.data() + values.GradientOffset, arrived.Gradients.data(),
+    std::memcpy(bytes.data() + values.GradientOffset, points.Gradients.data(),
       header.Points * sizeof(PackedGradient));
   }
   // Children stand behind their parents.
@@ -287,19 +350,15 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
   const std::size_t bricks = topology.GetCount();
   const auto first = static_cast<std::size_t>(messenger.GetRank());
   const auto step = static_cast<std::size_t>(ranks);
-  std::vector<Arrived> arrived;
-  std::optional<ValueSource> values;
-  messenger.RunTogether(what,
-    [&]
-    {
-      arrived.resize((bricks + step - 1 - first) / step);
-      values.emplace(routes, getValue, gradients, hasGradients);
-    });
+  std::vector<std::vector<std::vector<std::byte>>> arrived; // fragments from other ranks
+  const OwnValues own(routes, getValue, gradients, hasGradients);
+  ValueSource values(own, hasGradients, topology, messenger.GetRank());
+  messenger.RunTogether(what, [&] { arrived.resize((bricks + step - 1 - first) / step); });
   const auto absorb = [&](dsm::BlockId id, const std::byte* bytes, std::size_t count)
-  { arrived[id / step].Absorb(bytes, count, hasGradients); };
-  const auto ofMoving = [&](double done) { progress(0.5 * done); };
+  { arrived[id / step].emplace_back(bytes, bytes + count); };
+  const auto ofMoving = [&](double done) { progress(EndOfMoving * done); };
   const dsm::FirstFailure failure = dsm::FragmentStream::Run(
-    messenger, topology, *values, absorb, progress ? Progress(ofMoving) : Progress());
+    messenger, topology, values, absorb, progress ? Progress(ofMoving) : Progress());
 
   std::vector<IsovalueSurvey> ofThread;
   std::vector<dsm::Fragment> blocks;
@@ -310,14 +369,32 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
       ofThread.resize(static_cast<std::size_t>(workers));
       blocks.resize(arrived.size());
       std::vector<BlockSummary> mine(arrived.size());
+      std::vector<BrickPoints> pointsOfThread(static_cast<std::size_t>(workers));
+      SharedProgress advance(progress, EndOfMoving, EndOfWriting, arrived.size());
       ForEachOwn(*cells->Segment, first, step, arrived.size(), workers,
         [&](dsm::BlockId id, const std::byte* block, int thread)
         {
           const std::size_t number = id / step;
+          const CellBrick brick(block);
+          BrickPoints& points = pointsOfThread[static_cast<std::size_t>(thread)];
+          points.Reset(brick.GetHeader().Points, hasGradients);
+          for (const std::vector<std::byte>& fragment : arrived[number])
+          {
+            ValueSource::Read(fragment, hasGradients, points);
+          }
+          arrived[number] = {};
+          own.ForEachPointOf(id,
+            [&](std::uint16_t slot, float value, const PackedGradient& gradient)
+            {
+              points.Values.at(slot) = value;
+              if (hasGradients)
+              {
+                points.Gradients[slot] = gradient;
+              }
+            });
           blocks[number] = { id,
-            WriteValues(CellBrick(block), arrived[number], hasGradients,
-              ofThread[static_cast<std::size_t>(thread)]) };
-          arrived[number] = Arrived();
+            WriteValues(brick, points, hasGradients, ofThread[static_cast<std::size_t>(thread)]) };
+          advance.Add(thread);
           const CellValueHeader& header = CellValueBrick(blocks[number].Bytes.data()).GetHeader();
           mine[number] = { header.BlockBytes, { header.First, header.Last } };
         });
@@ -357,7 +434,7 @@ std::shared_ptr<CellValues> PublishCellValues(std::string_view what,
       source.emplace(std::move(blocks));
     });
   BlockSink sink;
-  const auto ofCopying = [&](double done) { progress(0.5 + 0.5 * done); };
+  const auto ofCopying = [&](double done) { progress(EndOfWriting + (1.0 - EndOfWriting) * done); };
   published->Segment = store.Publish(
     what, std::move(*directory), *source, sink, progress ? Progress(ofCopying) : Progress(), place);
   return published;
