@@ -23,6 +23,9 @@ constexpr std::uint64_t PointsOfPart = 4096;
 constexpr int MostPartBits = 20;
 constexpr std::uint64_t LeastChunk = std::uint64_t(1) << 16;
 
+/// Of points without a place. All others are odd.
+constexpr std::uint64_t NoHash = 0;
+
 /// A point, and the first one of its place.
 using LaterPoint = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -71,32 +74,36 @@ private:
     return this->PartBits == 0 ? 0 : static_cast<std::size_t>(hash >> (64 - this->PartBits));
   }
 
-  /// Calls visit(chunk, point, hash) for every point that has a place.
-  template <class Visit>
-  void ForEachHash(const Visit& visit) const
+  /// Writes the hashes of all points, and returns how many of each chunk are in each part.
+  std::vector<std::uint32_t> FindHashes(std::uint64_t* hashes) const
   {
+    const std::size_t parts = this->GetPartCount();
+    const std::size_t chunks = (this->Count + this->ChunkSize - 1) / this->ChunkSize;
+    std::vector<std::uint32_t> counts(chunks * parts, 0);
     ParallelForChunks(this->Threads, this->Count, this->ChunkSize,
       [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
       {
         for (std::size_t point = begin; point < end; ++point)
         {
           float place[3];
-          if (this->GetPlace(point, place))
+          hashes[point] = this->GetPlace(point, place) ? HashPlace(place) | 1u : NoHash;
+          if (hashes[point] != NoHash)
           {
-            visit(chunk, static_cast<std::uint32_t>(point), HashPlace(place));
+            ++counts[chunk * parts + this->GetPart(hashes[point])];
           }
         }
       });
+    return counts;
   }
 
   /// By the first bits of the hash; points of a part stay in ascending order.
   void Sort()
   {
     const std::size_t parts = this->GetPartCount();
-    const std::size_t chunks = (this->Count + this->ChunkSize - 1) / this->ChunkSize;
-    std::vector<std::uint32_t> places(chunks * parts, 0);
-    this->ForEachHash([&](std::size_t chunk, std::uint32_t, std::uint64_t hash)
-      { ++places[chunk * parts + this->GetPart(hash)]; });
+    const dsm::BlockArena hashMemory(this->Count * sizeof(std::uint64_t));
+    auto* const hashes = reinterpret_cast<std::uint64_t*>(hashMemory.GetData());
+    std::vector<std::uint32_t> places = this->FindHashes(hashes);
+    const std::size_t chunks = places.size() / parts;
     this->Begins.assign(parts + 1, 0);
     std::uint32_t sum = 0;
     for (std::size_t part = 0; part < parts; ++part)
@@ -110,12 +117,18 @@ private:
     this->Begins[parts] = sum;
     this->Memory = dsm::BlockArena(sum * sizeof(Entry));
     this->Entries = reinterpret_cast<Entry*>(this->Memory.GetData());
-    this->ForEachHash(
-      [&](std::size_t chunk, std::uint32_t point, std::uint64_t hash)
+    ParallelForChunks(this->Threads, this->Count, this->ChunkSize,
+      [&](std::size_t begin, std::size_t end, std::size_t chunk, int)
       {
-        this->Entries[places[chunk * parts + this->GetPart(hash)]++] = {
-          static_cast<std::uint32_t>(hash >> 8), point
-        };
+        for (std::size_t point = begin; point < end; ++point)
+        {
+          if (const std::uint64_t hash = hashes[point]; hash != NoHash)
+          {
+            this->Entries[places[chunk * parts + this->GetPart(hash)]++] = {
+              static_cast<std::uint32_t>(hash >> 8), static_cast<std::uint32_t>(point)
+            };
+          }
+        }
       });
   }
 

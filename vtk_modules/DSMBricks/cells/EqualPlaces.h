@@ -37,7 +37,7 @@ struct EqualPlaces
 std::uint64_t HashPlace(const float place[3]);
 
 /// Finds which of the points [0, count) have the same place. The result does not depend on the number of threads.
-/// Takes 8 bytes a point while it runs. Throws what `getPlace` throws, and dsm::Error for more points than 32 bits
+/// Takes 16 bytes a point while it runs. Throws what `getPlace` throws, and dsm::Error for more points than 32 bits
 /// can number.
 EqualPlaces FindEqualPlaces(std::uint64_t count, GetPlaceFunction getPlace, int threads);
 
