@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMGridCells.h"
 
+#include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/Error.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -122,32 +123,44 @@ bool vtkDSMGridCells::HasVolume(vtkPointSet* grid)
   return false;
 }
 
-vtkDSMGridCells::Cuts vtkDSMGridCells::Cut(const Grids& grids)
+std::vector<std::uint8_t> vtkDSMGridCells::ReadTypes(vtkPointSet* grid, int threads)
+{
+  constexpr std::size_t cellsOfChunk = std::size_t(1) << 16;
+  auto* const cells = vtkUnstructuredGrid::SafeDownCast(grid);
+  std::vector<std::uint8_t> types(
+    cells ? static_cast<std::size_t>(cells->GetNumberOfCells()) : std::size_t(0));
+  bricks::ParallelForChunks(threads, types.size(), cellsOfChunk,
+    [&](std::size_t begin, std::size_t end, std::size_t, int)
+    {
+      for (std::size_t cell = begin; cell < end; ++cell)
+      {
+        types[cell] = static_cast<std::uint8_t>(cells->GetCellType(static_cast<vtkIdType>(cell)));
+      }
+    });
+  return types;
+}
+
+vtkDSMGridCells::Cuts vtkDSMGridCells::Cut(const Grids& grids, int threads)
 {
   Cuts cuts;
   for (vtkPointSet* const grid : grids)
   {
     auto& cut = cuts.emplace_back();
-    auto* const cells = vtkUnstructuredGrid::SafeDownCast(grid);
-    bool isAny = false;
-    for (vtkIdType cell = 0; cells && !isAny && cell < cells->GetNumberOfCells(); ++cell)
+    const std::vector<std::uint8_t> types = ReadTypes(grid, threads);
+    if (std::any_of(types.begin(), types.end(), vtkDSMCutCells::IsCut))
     {
-      isAny = vtkDSMCutCells::IsCut(cells->GetCellType(cell));
-    }
-    if (isAny)
-    {
-      cut = std::make_shared<const vtkDSMCutCells>(cells);
+      cut = std::make_shared<const vtkDSMCutCells>(vtkUnstructuredGrid::SafeDownCast(grid));
     }
   }
   return cuts;
 }
 
-vtkDSMGridCells::vtkDSMGridCells(const Grids& grids, const Cuts& cuts, Use use)
+vtkDSMGridCells::vtkDSMGridCells(const Grids& grids, const Cuts& cuts, int threads, Use use)
 {
   this->Pieces.reserve(grids.size()); // pieces have pointers into themselves
   for (std::size_t grid = 0; grid < grids.size(); ++grid)
   {
-    this->Add(grids[grid], cuts[grid], use);
+    this->Add(grids[grid], cuts[grid], threads, use);
   }
   if (this->Points > std::numeric_limits<std::uint32_t>::max())
   {
@@ -159,7 +172,8 @@ vtkDSMGridCells::vtkDSMGridCells(const Grids& grids, const Cuts& cuts, Use use)
 
 vtkDSMGridCells::~vtkDSMGridCells() = default;
 
-void vtkDSMGridCells::Add(vtkPointSet* grid, std::shared_ptr<const vtkDSMCutCells> cut, Use use)
+void vtkDSMGridCells::Add(
+  vtkPointSet* grid, std::shared_ptr<const vtkDSMCutCells> cut, int threads, Use use)
 {
   Piece& piece = this->Pieces.emplace_back();
   piece.Data = grid;
@@ -203,11 +217,10 @@ void vtkDSMGridCells::Add(vtkPointSet* grid, std::shared_ptr<const vtkDSMCutCell
       piece.Offsets.Set(cells->GetOffsetsArray());
       piece.Connectivity.Set(cells->GetConnectivityArray());
     }
-    for (vtkIdType cell = 0; this->OnlyTetrahedra && cell < grid->GetNumberOfCells(); ++cell)
-    {
-      const int corners = CountCorners(unstructured->GetCellType(cell));
-      this->OnlyTetrahedra = corners == 0 || corners == 4;
-    }
+    piece.Types = ReadTypes(grid, threads);
+    this->OnlyTetrahedra = this->OnlyTetrahedra &&
+      std::all_of(piece.Types.begin(), piece.Types.end(),
+        [](int type) { return type == VTK_TETRA || CountCorners(type) == 0; });
     if (piece.Cut && use == Use::Means)
     {
       AddGroups(piece);
@@ -290,16 +303,18 @@ std::size_t vtkDSMGridCells::FindByCell(std::uint64_t cell) const
   return static_cast<std::size_t>(std::prev(next) - this->Pieces.begin());
 }
 
-std::uint64_t vtkDSMGridCells::FindPoint(const Piece& piece, std::uint64_t cell, std::int64_t at)
+void vtkDSMGridCells::ThrowForPoint(const Piece& piece, std::uint64_t cell, std::int64_t point)
 {
-  const std::int64_t point = piece.Connectivity.Get(static_cast<std::uint64_t>(at));
-  if (point < 0 || static_cast<std::uint64_t>(point) >= piece.OwnPoints)
-  {
-    throw dsm::Error("Cell " + std::to_string(cell) + " of an unstructured grid refers to point " +
-      std::to_string(point) + ", but the grid has only " + std::to_string(piece.OwnPoints) +
-      " points. Check the dataset's cells.");
-  }
-  return static_cast<std::uint64_t>(point);
+  throw dsm::Error("Cell " + std::to_string(cell) + " of an unstructured grid refers to point " +
+    std::to_string(point) + ", but the grid has only " + std::to_string(piece.OwnPoints) +
+    " points. Check the dataset's cells.");
+}
+
+void vtkDSMGridCells::ThrowForCount(std::uint64_t cell, std::int64_t given, int needed)
+{
+  throw dsm::Error("Cell " + std::to_string(cell) + " of an unstructured grid has " +
+    std::to_string(given) + " points, but its type needs " + std::to_string(needed) +
+    ". Check the dataset's cells.");
 }
 
 int vtkDSMGridCells::FindCorners(
@@ -343,14 +358,19 @@ int vtkDSMGridCells::FindCorners(
       [corners](std::uint8_t corner) { return corners[corner]; });
     return MostCorners;
   }
-  const int type = piece.Data->GetCellType(static_cast<vtkIdType>(cell));
+  return this->FindOwnCorners(piece, cell, points);
+}
+
+inline int vtkDSMGridCells::FindOwnCorners(
+  const Piece& piece, std::uint64_t cell, std::uint64_t points[MostCorners]) const
+{
+  const int type = piece.Types[static_cast<std::size_t>(cell)];
   const int count = CountCorners(type);
   const std::int64_t begin = piece.Offsets.Get(cell);
-  if (piece.Offsets.Get(cell + 1) - begin < count)
+  const std::int64_t listed = piece.Offsets.Get(cell + 1) - begin;
+  if (listed < count)
   {
-    throw dsm::Error("Cell " + std::to_string(cell) + " of an unstructured grid has " +
-      std::to_string(piece.Offsets.Get(cell + 1) - begin) + " points, but its type needs " +
-      std::to_string(count) + ". Check the dataset's cells.");
+    ThrowForCount(cell, listed, count);
   }
   const int given = this->OnlyTetrahedra ? count : static_cast<int>(MostCorners);
   const std::uint8_t* const order = GetOrder(this->OnlyTetrahedra ? VTK_HEXAHEDRON : type);
@@ -376,8 +396,43 @@ bool vtkDSMGridCells::IsShown(std::uint64_t cell) const
   const Piece& piece = this->Pieces[this->FindByCell(cell)];
   const std::uint64_t number = cell - piece.FirstCell;
   const bool isWhole = piece.Size.x == 0 && number < piece.OwnCells;
-  return (!isWhole || CountCorners(piece.Data->GetCellType(static_cast<vtkIdType>(number))) > 0) &&
+  return (!isWhole || CountCorners(piece.Types[static_cast<std::size_t>(number)]) > 0) &&
     this->IsVisible(piece, this->FindOwner(piece, number));
+}
+
+void vtkDSMGridCells::ReadCells(std::uint64_t first, std::size_t count,
+  std::uint64_t (*points)[MostCorners], bool* areShown) const
+{
+  std::size_t done = 0;
+  while (done < count)
+  {
+    const Piece& piece = this->Pieces[this->FindByCell(first + done)];
+    const std::uint64_t begin = first + done - piece.FirstCell;
+    const std::size_t before = done;
+    if (piece.Size.x == 0 && begin < piece.OwnCells && !piece.CellGhosts && !piece.PointGhosts)
+    {
+      done +=
+        static_cast<std::size_t>(std::min<std::uint64_t>(count - done, piece.OwnCells - begin));
+      for (std::size_t number = before; number < done; ++number)
+      {
+        const std::uint64_t cell = begin + (number - before);
+        areShown[number] = CountCorners(piece.Types[static_cast<std::size_t>(cell)]) > 0;
+        if (areShown[number])
+        {
+          const int corners = this->FindOwnCorners(piece, cell, points[number]);
+          for (int corner = 0; corner < corners; ++corner)
+          {
+            points[number][corner] += piece.FirstPoint;
+          }
+        }
+      }
+    }
+    else
+    {
+      this->CellSource::ReadCells(first + done, 1, points + done, areShown + done);
+      ++done;
+    }
+  }
 }
 
 bool vtkDSMGridCells::IsShown(const Place& cell) const

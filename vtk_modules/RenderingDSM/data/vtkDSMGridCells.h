@@ -34,8 +34,10 @@ public:
   static vtkPointSet* FindGrid(vtkDataObject* data);
   /// Returns whether a grid has cells with a volume.
   static bool HasVolume(vtkPointSet* grid);
+  /// The types of an unstructured grid's cells; empty for a structured one. `threads`: the calling one included.
+  static std::vector<std::uint8_t> ReadTypes(vtkPointSet* grid, int threads);
   /// Local. Throws dsm::Error for a cell with a point that does not exist.
-  static Cuts Cut(const Grids& grids);
+  static Cuts Cut(const Grids& grids, int threads);
 
   /// The use of the cells.
   enum class Use
@@ -45,7 +47,7 @@ public:
     Means
   };
   /// Local. Throws dsm::Error for grids that are damaged, or too large.
-  vtkDSMGridCells(const Grids& grids, const Cuts& cuts, Use use = Use::Bricks);
+  vtkDSMGridCells(const Grids& grids, const Cuts& cuts, int threads, Use use = Use::Bricks);
   ~vtkDSMGridCells() override;
 
   std::uint64_t GetCellCount() const override { return this->Cells; }
@@ -56,6 +58,8 @@ public:
   bool HasOnlyTetrahedra() const override { return this->OnlyTetrahedra; }
   void GetCorners(std::uint64_t cell, std::uint64_t points[MostCorners]) const override;
   bool IsShown(std::uint64_t cell) const override;
+  void ReadCells(std::uint64_t first, std::size_t count, std::uint64_t (*points)[MostCorners],
+    bool* areShown) const override;
   void GetPosition(std::uint64_t point, double position[3]) const override;
 
   /// A cell or a point of one of the grids.
@@ -122,6 +126,7 @@ private:
     const float* Floats = nullptr;   ///< positions, if they are floats, three by three
     const double* Doubles = nullptr; ///< or doubles
     bricks::Index3 Size{ 0 }; ///< points along the axes of a structured grid; 0: unstructured
+    std::vector<std::uint8_t> Types; ///< of the cells of an unstructured grid
     Numbers Offsets;
     Numbers Connectivity;
     std::vector<Group> Groups;         ///< in place of linear cells, if cells are for means
@@ -132,7 +137,7 @@ private:
     std::uint64_t FirstCell = 0;
   };
 
-  void Add(vtkPointSet* grid, std::shared_ptr<const vtkDSMCutCells> cut, Use use);
+  void Add(vtkPointSet* grid, std::shared_ptr<const vtkDSMCutCells> cut, int threads, Use use);
   static void AddGroups(Piece& piece);
   static void FindFurtherPlaces(Piece& piece);
   std::size_t FindByPoint(std::uint64_t point) const;
@@ -140,7 +145,21 @@ private:
   /// The cell of a piece that one of its cells is, or is cut from.
   std::uint64_t FindOwner(const Piece& piece, std::uint64_t cell) const;
   /// The point at an index of Connectivity. Throws dsm::Error where the piece has no such point.
-  static std::uint64_t FindPoint(const Piece& piece, std::uint64_t cell, std::int64_t at);
+  static std::uint64_t FindPoint(const Piece& piece, std::uint64_t cell, std::int64_t at)
+  {
+    const std::int64_t point = piece.Connectivity.Get(static_cast<std::uint64_t>(at));
+    if (point < 0 || static_cast<std::uint64_t>(point) >= piece.OwnPoints)
+    {
+      ThrowForPoint(piece, cell, point);
+    }
+    return static_cast<std::uint64_t>(point);
+  }
+  [[noreturn]] static void ThrowForPoint(
+    const Piece& piece, std::uint64_t cell, std::int64_t point);
+  [[noreturn]] static void ThrowForCount(std::uint64_t cell, std::int64_t given, int needed);
+  /// Finds the points of a cell of an unstructured grid, by the piece's numbers; returns how many.
+  int FindOwnCorners(
+    const Piece& piece, std::uint64_t cell, std::uint64_t points[MostCorners]) const;
   /// Finds the points of a cell of a piece, by the piece's numbers; returns how many.
   int FindCorners(const Piece& piece, std::uint64_t cell, std::uint64_t points[MostCorners]) const;
 

@@ -81,17 +81,15 @@ Reader MakeReader(vtkDataArray* array, int component, const bricks::ValidValues&
 }
 
 /// Adds what an unstructured grid's cells are, apart from their numbers of points.
-void AddKinds(vtkUnstructuredGrid* grid, bricks::ByteHash& hash)
+void AddKinds(vtkUnstructuredGrid* grid, int threads, bricks::ByteHash& hash)
 {
   vtkNew<vtkIdList> faces;
-  std::vector<std::uint8_t> types(static_cast<std::size_t>(grid->GetNumberOfCells()));
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  const std::vector<std::uint8_t> types = vtkDSMGridCells::ReadTypes(grid, threads);
+  for (std::size_t cell = 0; cell < types.size(); ++cell)
   {
-    const int type = grid->GetCellType(cell);
-    types[static_cast<std::size_t>(cell)] = static_cast<std::uint8_t>(type);
-    if (type == VTK_POLYHEDRON)
+    if (types[cell] == VTK_POLYHEDRON)
     {
-      grid->GetFaceStream(cell, faces);
+      grid->GetFaceStream(static_cast<vtkIdType>(cell), faces);
       hash.Add(faces->GetPointer(0),
         static_cast<std::size_t>(faces->GetNumberOfIds()) * sizeof(vtkIdType));
     }
@@ -290,7 +288,7 @@ std::uint64_t vtkDSMCellPart::HashPlaces() const
     // Degrees and weights of Lagrange and Bezier cells.
     this->AddArray(grid->GetCellData()->GetHigherOrderDegrees(), hash);
     this->AddArray(grid->GetPointData()->GetRationalWeights(), hash);
-    AddKinds(unstructured, hash);
+    AddKinds(unstructured, this->CountThreads(), hash);
   }
   return hash.Get();
 }
@@ -330,7 +328,7 @@ void vtkDSMCellPart::RequireCells(
   }
   const auto cells = std::make_shared<Cells>(this->Group, inputs.Cuts);
   bricks::SortedBrickSettings settings;
-  settings.Threads = this->Group->GetStore().GetSettings().Workers;
+  settings.Threads = this->CountThreads();
   const vtkDSMGridCells& source = *inputs.Source;
   const std::string what = "the cells of " + request.GetName();
   cells->Bricks = this->Group->PublishWithRoom(
@@ -370,8 +368,10 @@ void vtkDSMCellPart::Refuse(const Choice& choice)
 vtkDSMCellPart::Inputs vtkDSMCellPart::MakeInputs(const Choice& choice) const
 {
   Inputs inputs;
-  inputs.Cuts = this->Known ? this->Known->Cuts : vtkDSMGridCells::Cut(this->Own);
-  inputs.Source = std::make_unique<const vtkDSMGridCells>(this->Own, inputs.Cuts);
+  inputs.Cuts =
+    this->Known ? this->Known->Cuts : vtkDSMGridCells::Cut(this->Own, this->CountThreads());
+  inputs.Source =
+    std::make_unique<const vtkDSMGridCells>(this->Own, inputs.Cuts, this->CountThreads());
   for (vtkPointSet* const grid : this->Own)
   {
     Info info;
@@ -391,12 +391,12 @@ std::vector<float> vtkDSMCellPart::AverageCells(
     [&]
     {
       whole = std::make_unique<const vtkDSMGridCells>(
-        this->Own, inputs.Cuts, vtkDSMGridCells::Use::Means);
+        this->Own, inputs.Cuts, this->CountThreads(), vtkDSMGridCells::Use::Means);
     });
   return bricks::AverageCells(
     request.GetName(), *whole, *cells.Shared,
-    [&](std::uint64_t cell) { return inputs.Read(whole->FindOwner(cell)); },
-    this->Group->GetStore().GetSettings().Workers, messenger);
+    [&](std::uint64_t cell) { return inputs.Read(whole->FindOwner(cell)); }, this->CountThreads(),
+    messenger);
 }
 
 std::shared_ptr<bricks::CellValues> vtkDSMCellPart::PublishValues(const Request& request,
@@ -405,7 +405,7 @@ std::shared_ptr<bricks::CellValues> vtkDSMCellPart::PublishValues(const Request&
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const std::string what = request.GetName();
-  const int threads = this->Group->GetStore().GetSettings().Workers;
+  const int threads = this->CountThreads();
   const bool isOfCells = request.Array.OnCells;
   std::vector<float> averages;
   if (isOfCells)
@@ -498,7 +498,7 @@ vtkDSMPart::OwnGrids vtkDSMCellPart::FindOwnGrids(const Choice& choice) const
 {
   OwnGrids found;
   const vtkDSMGridCells::Cuts none(this->Own.size());
-  const vtkDSMGridCells source(this->Own, none);
+  const vtkDSMGridCells source(this->Own, none, this->CountThreads());
   for (std::size_t own = 0; own < this->Own.size(); ++own)
   {
     Info info;

@@ -49,6 +49,8 @@ private:
   vtkDSMCellPart(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMGridCells::Grids grids,
     const vtkDSMBlockLook& look);
   std::uint64_t HashPlaces() const;
+  /// Threads of this rank that read and build.
+  int CountThreads() const { return this->Group->GetStore().GetSettings().Workers; }
   /// Throws dsm::Error for an array that cannot be shown on such cells.
   static void Refuse(const Choice& choice);
   /// Local. Throws dsm::Error.
