@@ -3,6 +3,7 @@
 #include "VolumeMapperTest.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCell.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -26,6 +27,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -598,6 +600,47 @@ TEST_F(VolumeMapperCells, DamagedGridsAreRefused)
   flat->InsertNextCell(VTK_TRIANGLE, 3, corners);
   flat->GetPointData()->SetScalars(MakeValues(flat));
   this->ExpectError(flat, "have no volume");
+}
+
+TEST_F(VolumeMapperCells, TellTheProgressAndCanBeAborted)
+{
+  struct Watch
+  {
+    vtkDSMScene* Scene;
+    vtkDSMVolumeMapper* Mapper;
+    double End; ///< of the work; above 1: it is not aborted
+    std::vector<double> Parts;
+  } watch{ this->Scene, this->Mapper, 0.0, {} };
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&watch);
+  progress->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*)
+    {
+      auto* const self = static_cast<Watch*>(data);
+      if (self->Scene->IsTracing())
+      {
+        self->Parts.push_back(self->Mapper->GetProgress());
+        self->Mapper->SetAbortExecute(self->Parts.back() >= self->End ? 1 : 0);
+      }
+    });
+  this->Mapper->AddObserver(vtkCommand::ProgressEvent, progress);
+  // While cells are sorted, and while values are found.
+  for (const double end : { 0.0, 0.1, 0.7 })
+  {
+    watch.End = end;
+    watch.Parts.clear();
+    this->ExpectError(MakeCells(AddMixed), "aborted");
+    ASSERT_FALSE(watch.Parts.empty());
+    EXPECT_GE(watch.Parts.back(), end);
+  }
+  watch.End = 2.0;
+  watch.Parts.clear();
+  this->Mapper->SetInputDataObject(MakeCells(AddMixed));
+  EXPECT_GT(CountCovered(this->RenderTraced()), 1000);
+  EXPECT_FALSE(this->Errors->GetError());
+  EXPECT_TRUE(std::is_sorted(watch.Parts.begin(), watch.Parts.end()));
+  EXPECT_GT(watch.Parts.size(), 10u);
+  EXPECT_EQ(watch.Parts.back(), 1.0);
 }
 
 TEST_F(VolumeMapperCells, SlicesAndVolumes)

@@ -18,6 +18,9 @@ namespace bricks
 namespace
 {
 
+/// Part of the time until the scales are known.
+constexpr double EndOfScales = 0.4;
+
 struct CellValueSum
 {
   std::int64_t Sum;
@@ -39,9 +42,10 @@ public:
   }
 
   /// Finds how large the values around each of this rank's points may be.
-  void FindScales()
+  void FindScales(dsm::FunctionRef<void(double)> progress)
   {
-    this->ForEachCell(
+    SharedProgress advance(progress, 0.0, EndOfScales, this->Source.GetCellCount());
+    this->ForEachCell(advance,
       [this](double value, const std::uint64_t* points, int corners, std::size_t chunk)
       {
         const std::uint32_t power = ExactScale(std::abs(value)).GetPower();
@@ -62,11 +66,12 @@ public:
   }
 
   /// Adds up the values of this rank's cells.
-  void AddCells()
+  void AddCells(dsm::FunctionRef<void(double)> progress)
   {
+    SharedProgress advance(progress, EndOfScales, 1.0, this->Source.GetCellCount());
     this->Memory = dsm::BlockArena(this->Notes.GetCount() * sizeof(CellValueSum));
     this->Sums = reinterpret_cast<CellValueSum*>(this->Memory.GetData());
-    this->ForEachCell(
+    this->ForEachCell(advance,
       [this](double value, const std::uint64_t* points, int corners, std::size_t chunk)
       {
         std::uint64_t added[CellSource::MostCorners];
@@ -113,9 +118,9 @@ private:
 
   /// Calls visit(value, points, corners, chunk) for every shown cell that has a value.
   template <class Visit>
-  void ForEachCell(const Visit& visit) const
+  void ForEachCell(SharedProgress& progress, const Visit& visit) const
   {
-    ForEachShownCell(this->Source, this->Threads,
+    ForEachShownCell(this->Source, this->Threads, progress,
       [&](std::uint64_t cell, const std::uint64_t* points, int corners, std::size_t chunk, int)
       {
         const double value = this->GetValue(cell);
@@ -139,17 +144,17 @@ private:
 
 std::vector<float> AverageCells(std::string_view what, const CellSource& source,
   const SharedPlaces& places, dsm::FunctionRef<double(std::uint64_t cell)> getCellValue,
-  int threads, dsm::Messenger& messenger)
+  int threads, dsm::Messenger& messenger, dsm::FunctionRef<void(double)> progress)
 {
   std::optional<CellAverager> averager;
   messenger.RunTogether(what,
     [&]
     {
       averager.emplace(source, places, getCellValue, threads);
-      averager->FindScales();
+      averager->FindScales(progress);
     });
   averager->JoinScales(what);
-  messenger.RunTogether(what, [&] { averager->AddCells(); });
+  messenger.RunTogether(what, [&] { averager->AddCells(progress); });
   places.Sum(what, averager->GetSums(), 2);
   std::vector<float> means;
   messenger.RunTogether(what, [&] { means = averager->FindMeans(); });

@@ -314,9 +314,11 @@ void CellRecordBuilder::SortCells(const std::uint32_t* records, std::size_t coun
   const auto* const corners = reinterpret_cast<const CornerRecord*>(records);
   const auto each = static_cast<std::size_t>(this->Corners);
   this->Keys.resize(count);
+  this->AreOfOneRank = true;
   for (std::size_t index = 0; index < count; ++index)
   {
     const CornerRecord* const record = corners + index * each;
+    this->AreOfOneRank = this->AreOfOneRank && record->Rank == corners->Rank;
     double center[3];
     GetCenter(record, this->Corners, center);
     this->Keys[index] = { this->Curve.Get(center), record };
@@ -347,6 +349,41 @@ RecordBrick CellRecordBuilder::BuildBrick(const Key* keys, std::size_t count)
   return brick;
 }
 
+inline CellRecordBuilder::Entry& CellRecordBuilder::FindEntry(const CornerRecord& corner)
+{
+  std::uint64_t hash = ((std::uint64_t(corner.Rank) << 32) ^ corner.Point) * 0x9e3779b97f4a7c15u;
+  hash ^= hash >> 32;
+  Entry* const table = this->Table.data();
+  const std::size_t mask = this->Table.size() - 1;
+  for (std::size_t place = hash & mask;; place = (place + 1) & mask)
+  {
+    Entry& entry = table[place];
+    if (entry.Number == 0 ||
+      (entry.Point == corner.Point &&
+        (this->AreOfOneRank || this->Found[entry.Number - 1].Rank == corner.Rank)))
+    {
+      return entry;
+    }
+  }
+}
+
+inline std::uint32_t CellRecordBuilder::FindPoint(const CornerRecord& corner)
+{
+  Entry& entry = this->FindEntry(corner);
+  if (entry.Number != 0)
+  {
+    return entry.Number - 1;
+  }
+  this->Found.push_back(corner);
+  const auto number = static_cast<std::uint32_t>(this->Found.size());
+  entry = { corner.Point, number };
+  if (2 * this->Found.size() > this->Table.size())
+  {
+    this->EnlargeTable(2 * this->Table.size());
+  }
+  return number - 1;
+}
+
 void CellRecordBuilder::CollectPoints(const Key* keys, std::size_t count)
 {
   const auto each = static_cast<std::size_t>(this->Corners);
@@ -357,12 +394,13 @@ void CellRecordBuilder::CollectPoints(const Key* keys, std::size_t count)
   }
   this->Found.clear();
   this->EnlargeTable(size);
-  this->CornersFound.clear();
+  this->CornersFound.resize(each * count);
+  std::uint32_t* found = this->CornersFound.data();
   for (std::size_t cell = 0; cell < count; ++cell)
   {
     for (std::size_t corner = 0; corner < each; ++corner)
     {
-      this->CornersFound.push_back(this->FindPoint(keys[cell].Record[corner]));
+      *found++ = this->FindPoint(keys[cell].Record[corner]);
     }
   }
   this->SortPoints();
@@ -416,44 +454,12 @@ void CellRecordBuilder::SortPoints()
 
 void CellRecordBuilder::EnlargeTable(std::size_t size)
 {
-  this->Table.assign(size, 0);
+  this->Table.assign(size, { 0, 0 });
   for (std::size_t point = 0; point < this->Found.size(); ++point)
   {
-    this->FindEntry(this->Found[point]) = static_cast<std::uint32_t>(point + 1);
+    this->FindEntry(
+      this->Found[point]) = { this->Found[point].Point, static_cast<std::uint32_t>(point + 1) };
   }
-}
-
-std::uint32_t& CellRecordBuilder::FindEntry(const CornerRecord& corner)
-{
-  std::uint64_t hash = ((std::uint64_t(corner.Rank) << 32) ^ corner.Point) * 0x9e3779b97f4a7c15u;
-  hash ^= hash >> 32;
-  const std::size_t mask = this->Table.size() - 1;
-  for (std::size_t place = hash & mask;; place = (place + 1) & mask)
-  {
-    std::uint32_t& entry = this->Table[place];
-    if (entry == 0 ||
-      (this->Found[entry - 1].Point == corner.Point && this->Found[entry - 1].Rank == corner.Rank))
-    {
-      return entry;
-    }
-  }
-}
-
-std::uint32_t CellRecordBuilder::FindPoint(const CornerRecord& corner)
-{
-  std::uint32_t& entry = this->FindEntry(corner);
-  if (entry != 0)
-  {
-    return entry - 1;
-  }
-  this->Found.push_back(corner);
-  const auto number = static_cast<std::uint32_t>(this->Found.size());
-  entry = number;
-  if (2 * this->Found.size() > this->Table.size())
-  {
-    this->EnlargeTable(2 * this->Table.size());
-  }
-  return number - 1;
 }
 
 } // namespace bricks

@@ -84,6 +84,12 @@ private:
     std::uint64_t Code;
     const CornerRecord* Record;
   };
+  /// A point that was found.
+  struct Entry
+  {
+    std::uint32_t Point;
+    std::uint32_t Number; ///< in Found plus one; 0: the entry is free
+  };
 
   /// Sorts the cells by code, and cells of the same code by their corners.
   void SortCells(const std::uint32_t* records, std::size_t count);
@@ -93,7 +99,7 @@ private:
   std::uint32_t FindPoint(const CornerRecord& corner);
   void EnlargeTable(std::size_t size);
   /// The entry of a point, or the free one where it belongs.
-  std::uint32_t& FindEntry(const CornerRecord& corner);
+  Entry& FindEntry(const CornerRecord& corner);
   /// Makes Order the numbers of the points in Found by place, and of the same place by source.
   void SortPoints();
 
@@ -103,7 +109,8 @@ private:
   std::vector<Key> Keys;
   std::vector<CornerRecord> Found;  ///< each point once
   std::vector<CornerRecord> Sorted; ///< the same in ascending order
-  std::vector<std::uint32_t> Table; ///< numbers in Found plus one, by hash; 0 is free
+  std::vector<Entry> Table;         ///< by hash
+  bool AreOfOneRank = false;        ///< all records
   std::vector<std::uint32_t> CornersFound;
   std::vector<std::uint32_t> Axis; ///< a coordinate of each point in Found, as a number
   std::vector<std::uint32_t> Order;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/cells/PointGradients.h"
 
+#include "DSMBricks/base/Double2.h"
 #include "DSMBricks/base/Float4.h"
 #include "DSMBricks/cells/CornerOrder.h"
 #include "DSMBricks/cells/ExactScale.h"
@@ -26,6 +27,9 @@ namespace bricks
 
 namespace
 {
+
+/// Part of the time until the scales are known.
+constexpr double EndOfGradientScales = 0.3;
 
 /// A point of a function that is linear in each tetrahedron.
 struct GradientPoint
@@ -100,29 +104,61 @@ class TetrahedraFinder
 public:
   const CellTetrahedra& Find(const float places[][3])
   {
-    std::uint8_t order[Corners];
-    OrderCorners<Corners>(places, order);
-    Key key;
-    std::memcpy(&key, order, sizeof(key));
-    Known& known = this->Table[(key * Key(0x9e3779b97f4a7c15u)) >> (8 * sizeof(Key) - TableBits)];
-    if (known.Order != key || !known.IsSet)
+    if (!this->Last || !this->Last->Fits(places))
     {
-      known.IsSet = true;
-      known.Order = key;
-      known.Tetrahedra.Count = Divide(order, known.Tetrahedra.Corners);
+      std::uint8_t order[Corners];
+      OrderCorners<Corners>(places, order);
+      Key key;
+      std::memcpy(&key, order, sizeof(key));
+      constexpr Key factor = Key(0x9e3779b97f4a7c15u);
+      this->Last = &this->Table[(key * factor) >> (8 * sizeof(Key) - TableBits)];
+      if (this->Last->Order != key || !this->Last->IsSet)
+      {
+        this->Last->Set(key, order);
+      }
     }
-    return known.Tetrahedra;
+    return this->Last->Tetrahedra;
   }
 
 private:
   static constexpr int TableBits = 8;
   using Key = std::conditional_t<Corners == 8, std::uint64_t, std::uint32_t>;
   static_assert(sizeof(Key) == Corners);
+
   struct Known
   {
     Key Order = 0;
     bool IsSet = false;
+    bool IsStrict = false;        ///< no two corners have the same place
+    std::uint8_t Sorted[Corners]; ///< the corners in ascending order
     CellTetrahedra Tetrahedra;
+
+    void Set(Key key, const std::uint8_t order[Corners])
+    {
+      this->Order = key;
+      this->IsSet = true;
+      std::uint32_t found = 0;
+      for (std::size_t corner = 0; corner < Corners; ++corner)
+      {
+        this->Sorted[order[corner]] = static_cast<std::uint8_t>(corner);
+        found |= 1u << order[corner];
+      }
+      this->IsStrict = found + 1 == 1u << Corners;
+      this->Tetrahedra.Count = Divide(order, this->Tetrahedra.Corners);
+    }
+    /// Returns whether the corners of another cell are known to have this order.
+    bool Fits(const float places[][3]) const
+    {
+      bool fits = this->IsStrict;
+      for (std::size_t number = 0; fits && number + 1 < Corners; ++number)
+      {
+        const float* const one = places[this->Sorted[number]];
+        const float* const next = places[this->Sorted[number + 1]];
+        fits = one[0] < next[0] ||
+          (one[0] == next[0] && (one[1] < next[1] || (one[1] == next[1] && one[2] < next[2])));
+      }
+      return fits;
+    }
   };
 
   static int Divide(const std::uint8_t order[Corners], std::uint8_t tetrahedra[][4])
@@ -138,37 +174,54 @@ private:
     }
   }
 
+  Known* Last = nullptr;
   Known Table[1 << TableBits];
 };
 
-/// The vector product; a fourth component is not one of the vectors'.
-void Cross(const double one[4], const double other[4], double product[4])
+/// From the first corner of a tetrahedron to another one.
+struct CellEdge
 {
-  product[0] = one[1] * other[2] - one[2] * other[1];
-  product[1] = one[2] * other[0] - one[0] * other[2];
-  product[2] = one[0] * other[1] - one[1] * other[0];
-  product[3] = 0.0;
-}
+  double Way[6]; ///< x, y, z, x, y, and one that is not used
+  double Rise;   ///< of the value
 
-/// Writes what a tetrahedron adds to the sums of its corners, from its edges from the first of them, and by how much
-/// the value rises along each.
-void MeasureTetrahedron(
-  const double* const edges[3], const double rises[3], double parts[PartsOfGradient])
+  Double2 GetXy() const { return Double2::Load(this->Way); }
+  Double2 GetYz() const { return Double2::Load(this->Way + 1); }
+  Double2 GetZx() const { return Double2::Load(this->Way + 2); }
+};
+
+/// A vector product.
+struct EdgeProduct
 {
-  double areas[3][4];
-  Cross(edges[1], edges[2], areas[0]);
-  Cross(edges[2], edges[0], areas[1]);
-  Cross(edges[0], edges[1], areas[2]);
-  const double volume =
-    edges[0][0] * areas[0][0] + edges[0][1] * areas[0][1] + edges[0][2] * areas[0][2];
-  // A flat tetrahedron has no gradient, and others may be inside out.
-  const double sign = volume > 0.0 ? 1.0 : volume < 0.0 ? -1.0 : 0.0;
-  for (int axis = 0; axis < 3; ++axis)
+  EdgeProduct(const CellEdge& one, const CellEdge& other)
+    : Xy(one.GetYz() * other.GetZx() - one.GetZx() * other.GetYz())
+    , Z(one.Way[0] * other.Way[1] - one.Way[1] * other.Way[0])
   {
-    parts[axis] =
-      (rises[0] * areas[0][axis] + rises[1] * areas[1][axis] + rises[2] * areas[2][axis]) * sign;
   }
-  parts[3] = std::abs(volume);
+  Double2 Xy;
+  double Z;
+};
+
+/// Writes what a tetrahedron adds to the sums of its corners, from its edges from the first of them.
+inline void MeasureTetrahedron(const CellEdge& a, const CellEdge& b, const CellEdge& c,
+  double gradientFactor, double volumeFactor, std::int64_t parts[PartsOfGradient])
+{
+  const EdgeProduct areaOfA(b, c);
+  const EdgeProduct areaOfB(c, a);
+  const EdgeProduct areaOfC(a, b);
+  double products[2];
+  (a.GetXy() * areaOfA.Xy).Store(products);
+  const double volume = products[0] + products[1] + a.Way[2] * areaOfA.Z;
+  // A flat tetrahedron has no gradient, and others may be inside out.
+  const double factor = volume > 0.0 ? gradientFactor : volume < 0.0 ? -gradientFactor : 0.0;
+  const Double2 xy = Double2::Fill(a.Rise) * areaOfA.Xy + Double2::Fill(b.Rise) * areaOfB.Xy +
+    Double2::Fill(c.Rise) * areaOfC.Xy;
+  const double z = a.Rise * areaOfA.Z + b.Rise * areaOfB.Z + c.Rise * areaOfC.Z;
+  double scaled[2];
+  (xy * Double2::Fill(factor)).Store(scaled);
+  parts[0] = static_cast<std::int64_t>(scaled[0]);
+  parts[1] = static_cast<std::int64_t>(scaled[1]);
+  parts[2] = static_cast<std::int64_t>(z * factor);
+  parts[3] = static_cast<std::int64_t>(std::abs(volume) * volumeFactor);
 }
 
 class GradientFinder
@@ -184,9 +237,10 @@ public:
   }
 
   /// Finds how large the numbers around each of this rank's points may be.
-  void FindScales()
+  void FindScales(dsm::FunctionRef<void(double)> progress)
   {
-    this->ForEachCell(
+    SharedProgress advance(progress, 0.0, EndOfGradientScales, this->Source.GetCellCount());
+    this->ForEachCell(advance,
       [this](const std::uint64_t* points, const auto& cell, const GradientBounds& bounds,
         std::size_t chunk, int)
       {
@@ -209,14 +263,15 @@ public:
   }
 
   /// Adds up what this rank's cells give to its points.
-  void AddCells()
+  void AddCells(dsm::FunctionRef<void(double)> progress)
   {
+    SharedProgress advance(progress, EndOfGradientScales, 1.0, this->Source.GetCellCount());
     this->Memory = dsm::BlockArena(this->Notes.GetCount() * sizeof(GradientSum));
     this->Sums = reinterpret_cast<GradientSum*>(this->Memory.GetData());
     const auto threads = static_cast<std::size_t>(std::max(this->Threads, 1));
     std::vector<TetrahedraFinder<4>> ofTetrahedra(threads);
     std::vector<TetrahedraFinder<8>> ofHexahedra(threads);
-    this->ForEachCell(
+    this->ForEachCell(advance,
       [&](const std::uint64_t* points, const auto& cell, const GradientBounds& bounds,
         std::size_t chunk, int thread)
       {
@@ -276,9 +331,9 @@ private:
 
   /// Calls visit(points, CellPoints, bounds, chunk, thread) for every cell that counts.
   template <class Visit>
-  void ForEachCell(const Visit& visit) const
+  void ForEachCell(SharedProgress& progress, const Visit& visit) const
   {
-    ForEachShownCell(this->Source, this->Threads,
+    ForEachShownCell(this->Source, this->Threads, progress,
       [&](std::uint64_t, const std::uint64_t* points, int corners, std::size_t chunk, int thread)
       {
         corners == 4 ? this->VisitCell<4>(points, chunk, thread, visit)
@@ -352,34 +407,28 @@ private:
     std::int64_t sums[Corners][PartsOfGradient] = {};
     if (tetrahedra.Count > 0)
     {
-      double edges[Corners][4];
-      double rises[Corners];
+      CellEdge edges[Corners];
       const GradientPoint& origin = *cell[tetrahedra.Corners[0][0]];
       for (std::size_t corner = 0; corner < Corners; ++corner)
       {
-        for (int axis = 0; axis < 4; ++axis)
+        CellEdge& edge = edges[corner];
+        for (int axis = 0; axis < 3; ++axis)
         {
-          edges[corner][axis] = static_cast<double>(cell[corner]->Place[axis]) -
+          edge.Way[axis] = static_cast<double>(cell[corner]->Place[axis]) -
             static_cast<double>(origin.Place[axis]);
         }
-        rises[corner] = cell[corner]->Value - origin.Value;
+        edge.Way[3] = edge.Way[0];
+        edge.Way[4] = edge.Way[1];
+        edge.Rise = cell[corner]->Value - origin.Value;
       }
       const double gradientFactor = scales.OfGradient().GetFactor();
       const double volumeFactor = scales.OfVolume().GetFactor();
       for (int tetrahedron = 0; tetrahedron < tetrahedra.Count; ++tetrahedron)
       {
         const std::uint8_t* const corners = tetrahedra.Corners[tetrahedron];
-        const double* const ofTetrahedron[3] = { edges[corners[1]], edges[corners[2]],
-          edges[corners[3]] };
-        const double risesOf[3] = { rises[corners[1]], rises[corners[2]], rises[corners[3]] };
-        double parts[PartsOfGradient];
-        MeasureTetrahedron(ofTetrahedron, risesOf, parts);
         std::int64_t integers[PartsOfGradient];
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          integers[axis] = static_cast<std::int64_t>(parts[axis] * gradientFactor);
-        }
-        integers[3] = static_cast<std::int64_t>(parts[3] * volumeFactor);
+        MeasureTetrahedron(edges[corners[1]], edges[corners[2]], edges[corners[3]], gradientFactor,
+          volumeFactor, integers);
         for (int corner = 0; corner < 4; ++corner)
         {
           for (int part = 0; part < PartsOfGradient; ++part)
@@ -444,17 +493,18 @@ private:
 
 std::vector<PackedGradient> FindPointGradients(std::string_view what, const CellSource& source,
   const BrickSpace& space, const SharedPlaces& places,
-  dsm::FunctionRef<double(std::uint64_t point)> getValue, int threads, dsm::Messenger& messenger)
+  dsm::FunctionRef<double(std::uint64_t point)> getValue, int threads, dsm::Messenger& messenger,
+  dsm::FunctionRef<void(double)> progress)
 {
   std::optional<GradientFinder> finder;
   messenger.RunTogether(what,
     [&]
     {
       finder.emplace(source, space, getValue, threads);
-      finder->FindScales();
+      finder->FindScales(progress);
     });
   finder->JoinScales(what, places);
-  messenger.RunTogether(what, [&] { finder->AddCells(); });
+  messenger.RunTogether(what, [&] { finder->AddCells(progress); });
   places.Sum(what, finder->GetSums(), PartsOfGradient);
   std::vector<PackedGradient> gradients;
   messenger.RunTogether(what, [&] { gradients = finder->Pack(); });

@@ -23,11 +23,12 @@ namespace bricks
 /// tetrahedra meet in a place.
 ///
 /// `places`: of this rank's points, in the space of the bricks. `getValue(point)`: called by any thread, once a point.
-/// Cells with a corner without a finite value or place do not count. Takes 64 bytes a point while it runs. Throws the
-/// same dsm::Error on every rank.
+/// Cells with a corner without a finite value or place do not count. Takes 64 bytes a point while it runs.
+/// `progress` may be empty; what it throws ends the work on all ranks. Throws the same dsm::Error on every rank.
 std::vector<PackedGradient> FindPointGradients(std::string_view what, const CellSource& source,
   const BrickSpace& space, const SharedPlaces& places,
-  dsm::FunctionRef<double(std::uint64_t point)> getValue, int threads, dsm::Messenger& messenger);
+  dsm::FunctionRef<double(std::uint64_t point)> getValue, int threads, dsm::Messenger& messenger,
+  dsm::FunctionRef<void(double)> progress = {});
 
 } // namespace bricks
 

@@ -3,6 +3,7 @@
 #define bricks_ShownCells_h
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/SharedProgress.h"
 #include "DSMBricks/cells/CellSource.h"
 
 #include <algorithm>
@@ -35,10 +36,12 @@ void ForEachCellRead(
 
 /// Calls visit(cell, points, corners, chunk, thread) for every shown cell of this rank, in any order, by several
 /// threads at a time. `points`: the cell's corners, so many: 4 or 8. Cells of the same chunk are visited by one thread;
-/// they are the same each time. Rethrows what a call throws.
+/// they are the same each time. `progress`: each cell is a step. Rethrows what a call throws.
 template <class Visit>
-void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
+void ForEachShownCell(
+  const CellSource& source, int threads, SharedProgress& progress, const Visit& visit)
 {
+  constexpr std::uint64_t cellsOfStep = 4096;
   // Large chunks have few corners in common.
   constexpr std::uint64_t fewestCells = 8192;
   const auto chunks = 8 * static_cast<std::uint64_t>(std::max(threads, 1));
@@ -49,14 +52,19 @@ void ForEachShownCell(const CellSource& source, int threads, const Visit& visit)
     ParallelForChunks(threads, last - first, cellsOfChunk,
       [&](std::size_t begin, std::size_t end, std::size_t chunk, int thread)
       {
-        ForEachCellRead(source, first + begin, first + end,
-          [&](std::uint64_t cell, const std::uint64_t* points, bool isShown)
-          {
-            if (isShown)
+        for (std::uint64_t step = first + begin; step < first + end; step += cellsOfStep)
+        {
+          const std::uint64_t endOfStep = std::min(step + cellsOfStep, first + end);
+          ForEachCellRead(source, step, endOfStep,
+            [&](std::uint64_t cell, const std::uint64_t* points, bool isShown)
             {
-              visit(cell, points, corners, chunksBefore + chunk, thread);
-            }
-          });
+              if (isShown)
+              {
+                visit(cell, points, corners, chunksBefore + chunk, thread);
+              }
+            });
+          progress.Add(thread, static_cast<std::size_t>(endOfStep - step));
+        }
       });
     chunksBefore += (last - first + cellsOfChunk - 1) / cellsOfChunk;
   };

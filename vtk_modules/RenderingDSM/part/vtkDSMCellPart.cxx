@@ -39,7 +39,11 @@ namespace
 {
 
 /// Part of the time that cells take, of that of cells and values.
-constexpr double ShareOfCells = 0.8;
+constexpr double ShareOfCells = 0.65;
+
+/// Part of the time of values until the means of cells, and the gradients, are known.
+constexpr double EndOfMeans = 0.2;
+constexpr double EndOfGradients = 0.75;
 
 constexpr std::size_t ChunkOfPoints = 4096;
 
@@ -382,8 +386,8 @@ vtkDSMCellPart::Inputs vtkDSMCellPart::MakeInputs(const Choice& choice) const
   return inputs;
 }
 
-std::vector<float> vtkDSMCellPart::AverageCells(
-  const Request& request, const Inputs& inputs, const Cells& cells) const
+std::vector<float> vtkDSMCellPart::AverageCells(const Request& request, const Inputs& inputs,
+  const Cells& cells, const std::function<void(double)>& progress) const
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   std::unique_ptr<const vtkDSMGridCells> whole;
@@ -396,7 +400,7 @@ std::vector<float> vtkDSMCellPart::AverageCells(
   return bricks::AverageCells(
     request.GetName(), *whole, *cells.Shared,
     [&](std::uint64_t cell) { return inputs.Read(whole->FindOwner(cell)); }, this->CountThreads(),
-    messenger);
+    messenger, progress);
 }
 
 std::shared_ptr<bricks::CellValues> vtkDSMCellPart::PublishValues(const Request& request,
@@ -410,7 +414,8 @@ std::shared_ptr<bricks::CellValues> vtkDSMCellPart::PublishValues(const Request&
   std::vector<float> averages;
   if (isOfCells)
   {
-    averages = this->AverageCells(request, inputs, *cells);
+    averages = this->AverageCells(
+      request, inputs, *cells, [&](double done) { progress(EndOfMeans * done); });
   }
   const vtkDSMGridCells& source = *inputs.Source;
   const auto readAverage = [&](const vtkDSMGridCells::Place& place)
@@ -435,15 +440,19 @@ std::shared_ptr<bricks::CellValues> vtkDSMCellPart::PublishValues(const Request&
     });
   const auto getValue = [&](std::uint64_t point)
   { return found.empty() ? find(point) : found[static_cast<std::size_t>(point)]; };
+  const double begin = isOfCells ? EndOfMeans : 0.0;
+  const auto ofGradients = [&](double done) { progress(begin + (EndOfGradients - begin) * done); };
+  const auto ofBricks = [&](double done)
+  { progress(EndOfGradients + (1.0 - EndOfGradients) * done); };
   const std::vector<bricks::PackedGradient> gradients = bricks::FindPointGradients(
-    what, source, *cells->Bricks, *cells->Shared, getValue, threads, messenger);
+    what, source, *cells->Bricks, *cells->Shared, getValue, threads, messenger, ofGradients);
   // The values keep the cells.
   const std::shared_ptr<const bricks::CellBricks> bricksOfCells(cells, cells->Bricks.get());
   return this->Group->PublishWithRoom(
     [&](dsm::BlockStore::Place place)
     {
       return bricks::PublishCellValues(what, bricksOfCells, cells->Routes, getValue, gradients,
-        threads, this->Group->GetStore(), messenger, place, progress);
+        threads, this->Group->GetStore(), messenger, place, ofBricks);
     });
 }
 

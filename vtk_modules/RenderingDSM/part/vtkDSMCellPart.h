@@ -59,8 +59,8 @@ private:
   void RequireCells(const Request& request, const Inputs& inputs,
     const std::function<void(double)>& progress) const;
   /// Collective. The values at the points of this rank's grids.
-  std::vector<float> AverageCells(
-    const Request& request, const Inputs& inputs, const Cells& cells) const;
+  std::vector<float> AverageCells(const Request& request, const Inputs& inputs, const Cells& cells,
+    const std::function<void(double)>& progress) const;
   /// Collective.
   std::shared_ptr<bricks::CellValues> PublishValues(const Request& request, const Inputs& inputs,
     const std::shared_ptr<const Cells>& cells, const std::function<void(double)>& progress) const;
