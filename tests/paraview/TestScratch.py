@@ -82,6 +82,25 @@ check(get_covered(again).any() and "ERROR" not in messages.text, f"the next fram
 simple.Delete(source)
 render(view)
 
+# Cells: their values are in blocks of their own. Refused without a scratch directory, too.
+wavelet = simple.Wavelet(WholeExtent=[-30, 30] * 3)
+cells = simple.Tetrahedralize(Input=wavelet)
+display = show(cells, view, [150.0], "RTData", DSMMemory=256, DSMScratchDirectory="")
+expected = go_round()
+check(all(get_covered(picture).mean() > 0.05 for picture in expected), "cells are shown")
+display.DSMMemory = 1
+wavelet.Maximum = 256.0
+with Messages() as messages:
+    refused = render(view)
+check(not get_covered(refused).any(), "cells: nothing is drawn")
+check("DSMScratchDirectory" in messages.text, f"cells: it says what helps: {messages.text}")
+wavelet.Maximum = 255.0
+display.DSMScratchDirectory = DISK
+check_scratch(display, expected, 1, "cells")
+simple.Delete(cells)
+simple.Delete(wavelet)
+render(view)
+
 # Meshes.
 sphere = simple.Sphere(ThetaResolution=500, PhiResolution=500)
 display = show_traced(sphere, view, DSMMemory=256, DSMScratchDirectory="")
