@@ -109,9 +109,14 @@ public:
       codes[drop - begin] = order.GetOfTriangle(corners);
     }
   }
-  void ReadRecord(std::uint64_t drop, std::uint32_t* record) const override
+  void ReadRecords(
+    const std::uint64_t* drops, std::size_t count, std::uint32_t* records) const override
   {
-    std::memcpy(record, &this->Drops[drop], sizeof(Drop));
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      std::memcpy(records + number * sizeof(Drop) / sizeof(*records), &this->Drops[drops[number]],
+        sizeof(Drop));
+    }
   }
   std::unique_ptr<bricks::RecordBrickBuilder> CreateBuilder(
     const bricks::MortonCode&, std::uint32_t) const override

@@ -243,4 +243,14 @@ void TriangleReader::ReadRecord(std::uint64_t triangle, std::uint32_t* record) c
   }
 }
 
+void TriangleReader::ReadRecords(
+  const std::uint64_t* triangles, std::size_t count, std::uint32_t* records) const
+{
+  const std::size_t words = this->Layout.GetBytes() / sizeof(std::uint32_t);
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    this->ReadRecord(triangles[number], records + number * words);
+  }
+}
+
 } // namespace bricks

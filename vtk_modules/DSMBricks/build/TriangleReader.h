@@ -6,6 +6,7 @@
 #include "DSMBricks/build/TriangleSource.h"
 #include "DSMBricks/sorted/RecordReader.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -28,7 +29,9 @@ public:
   /// The code of the triangle's centroid, or NoCode.
   std::uint64_t FindCode(std::uint64_t triangle, const MortonCode& order) const;
   /// A TriangleRecord.
-  void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const override;
+  void ReadRecord(std::uint64_t triangle, std::uint32_t* record) const;
+  void ReadRecords(
+    const std::uint64_t* triangles, std::size_t count, std::uint32_t* records) const override;
   std::unique_ptr<RecordBrickBuilder> CreateBuilder(
     const MortonCode& order, std::uint32_t largestCount) const override;
 

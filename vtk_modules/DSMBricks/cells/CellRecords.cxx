@@ -2,6 +2,7 @@
 #include "DSMBricks/cells/CellRecords.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/PrefetchLine.h"
 #include "DSMBricks/cells/ShownCells.h"
 #include "DSMCore/memory/BlockArena.h"
 
@@ -264,19 +265,44 @@ void CellRecordReader::FindCodes(
     });
 }
 
-void CellRecordReader::ReadRecord(std::uint64_t primitive, std::uint32_t* record) const
+void CellRecordReader::ReadRecords(
+  const std::uint64_t* primitives, std::size_t count, std::uint32_t* records) const
 {
-  const Run& run = this->FindRun(primitive);
-  std::uint64_t given[CellSource::MostCorners];
-  std::uint64_t points[CellBrick::MostCorners];
-  this->Source.GetCorners(run.FirstCell + (primitive - run.FirstPrimitive), given);
-  this->Expand(given, points);
-  auto* const corners = reinterpret_cast<CornerRecord*>(record);
-  for (int corner = 0; corner < this->Corners; ++corner)
+  auto* const corners = reinterpret_cast<CornerRecord*>(records);
+  for (std::size_t done = 0; done < count; done += CellsTogether)
   {
-    std::copy_n(this->Places.Get(points[corner]), 3, corners[corner].Place);
-    corners[corner].Rank = this->Rank;
-    corners[corner].Point = static_cast<std::uint32_t>(points[corner]);
+    this->ReadBatch(primitives + done, std::min(CellsTogether, count - done),
+      corners + done * static_cast<std::size_t>(this->Corners));
+  }
+}
+
+void CellRecordReader::ReadBatch(
+  const std::uint64_t* primitives, std::size_t count, CornerRecord* corners) const
+{
+  std::uint64_t cells[CellsTogether] = {};
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    const Run& run = this->FindRun(primitives[number]);
+    cells[number] = run.FirstCell + (primitives[number] - run.FirstPrimitive);
+  }
+  std::uint64_t given[CellsTogether][CellSource::MostCorners];
+  this->Source.ReadCorners(cells, count, given);
+  // Cells are in the order of space, and their points anywhere in memory.
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    std::for_each(given[number], given[number] + this->GivenCorners,
+      [this](std::uint64_t point) { PrefetchLine(this->Places.Get(point)); });
+  }
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    std::uint64_t points[CellBrick::MostCorners];
+    this->Expand(given[number], points);
+    for (int corner = 0; corner < this->Corners; ++corner, ++corners)
+    {
+      std::copy_n(this->Places.Get(points[corner]), 3, corners->Place);
+      corners->Rank = this->Rank;
+      corners->Point = static_cast<std::uint32_t>(points[corner]);
+    }
   }
 }
 

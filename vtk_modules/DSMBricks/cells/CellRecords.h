@@ -41,11 +41,14 @@ public:
   /// The codes are those of the means of the corners.
   void FindCodes(std::uint64_t begin, std::uint64_t end, const MortonCode& order,
     std::uint64_t* codes) const override;
-  void ReadRecord(std::uint64_t primitive, std::uint32_t* record) const override;
+  void ReadRecords(
+    const std::uint64_t* primitives, std::size_t count, std::uint32_t* records) const override;
   std::unique_ptr<RecordBrickBuilder> CreateBuilder(
     const MortonCode& order, std::uint32_t largestCount) const override;
 
 private:
+  static constexpr std::size_t CellsTogether = 64;
+
   /// Cells that follow one another, and are in no grid.
   struct Run
   {
@@ -58,6 +61,8 @@ private:
   void ForEachPrimitive(std::uint64_t begin, std::uint64_t end, const Visit& visit) const;
   /// The run that a primitive is in.
   const Run& FindRun(std::uint64_t primitive) const;
+  /// Reads records of at most CellsTogether cells.
+  void ReadBatch(const std::uint64_t* primitives, std::size_t count, CornerRecord* corners) const;
   /// Points of a corner each, of those that the source gives for a cell.
   void Expand(const std::uint64_t* given, std::uint64_t points[CellBrick::MostCorners]) const;
 

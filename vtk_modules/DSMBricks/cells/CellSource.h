@@ -60,6 +60,15 @@ public:
       }
     }
   }
+  /// The points of several shown cells, in any order.
+  virtual void ReadCorners(
+    const std::uint64_t* cells, std::size_t count, std::uint64_t (*points)[MostCorners]) const
+  {
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      this->GetCorners(cells[number], points[number]);
+    }
+  }
   /// In the dataset's own space. Cells with a corner that is not finite are left out.
   virtual void GetPosition(std::uint64_t point, double position[3]) const = 0;
 };

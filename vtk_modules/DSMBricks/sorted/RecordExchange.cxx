@@ -62,13 +62,9 @@ bool RecordSource::Next(dsm::Fragment& fragment)
     std::max<std::uint64_t>(FragmentBytes / size, 1));
   fragment.Block = this->Cell;
   fragment.Bytes.resize(count * size);
-  std::byte* bytes = fragment.Bytes.data();
-  for (std::uint64_t index = 0; index < count; ++index)
-  {
-    this->Reader.ReadRecord(
-      this->Cells.GetPrimitive(this->Position++), reinterpret_cast<std::uint32_t*>(bytes));
-    bytes += size;
-  }
+  this->Cells.ReadRecords(this->Reader, this->Position, this->Position + count,
+    reinterpret_cast<std::uint32_t*>(fragment.Bytes.data()));
+  this->Position += count;
   return true;
 }
 

@@ -73,9 +73,10 @@ public:
   virtual void FindCodes(std::uint64_t begin, std::uint64_t end, const MortonCode& order,
     std::uint64_t* codes) const = 0;
 
-  /// Writes the record of a primitive that has a code. A record is a function of the primitive alone, not of the
-  /// rank or the order in which it came.
-  virtual void ReadRecord(std::uint64_t primitive, std::uint32_t* record) const = 0;
+  /// Writes the records of primitives that have a code, one after the other, in their order. A record is a function of
+  /// the primitive alone, not of the rank or the order in which it came.
+  virtual void ReadRecords(
+    const std::uint64_t* primitives, std::size_t count, std::uint32_t* records) const = 0;
 
   /// `largestCount`: of a brick's primitives.
   virtual std::unique_ptr<RecordBrickBuilder> CreateBuilder(

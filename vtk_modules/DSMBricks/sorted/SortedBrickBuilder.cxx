@@ -223,13 +223,10 @@ SortedBrickBuilder::BricksOfCells SortedBrickBuilder::BuildOwnBricks(
       const std::size_t count = this->Cells->GetPrimitiveCount(cell);
       std::vector<std::uint32_t>& records = recordsOfThread[static_cast<std::size_t>(thread)];
       records.resize(std::max(records.size(), count * words));
-      std::uint32_t* record = records.data();
       const auto [begin, end] = this->Cells->GetRange(cell);
-      for (std::uint64_t own = begin; own < end; ++own, record += words)
-      {
-        this->Reader.ReadRecord(this->Cells->GetPrimitive(own), record);
-      }
-      std::memcpy(record, arrived.GetRecords(index), arrived.GetBytes(index));
+      this->Cells->ReadRecords(this->Reader, begin, end, records.data());
+      std::memcpy(
+        records.data() + (end - begin) * words, arrived.GetRecords(index), arrived.GetBytes(index));
       bricks[index] = builders[static_cast<std::size_t>(thread)]->Build(records.data(), count);
       advance.Add(thread);
     });

@@ -127,6 +127,25 @@ void SortedCells::SortKeys(int threads, dsm::FunctionRef<void(double)> progress)
   this->Keys = sorted;
 }
 
+void SortedCells::ReadRecords(
+  const RecordReader& reader, std::uint64_t begin, std::uint64_t end, std::uint32_t* records) const
+{
+  constexpr std::uint64_t together = 64;
+  const std::size_t words = reader.GetKind().RecordBytes / sizeof(std::uint32_t);
+  std::uint64_t primitives[together] = {};
+  while (begin < end)
+  {
+    const auto count = static_cast<std::size_t>(std::min(together, end - begin));
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      primitives[number] = this->Keys[begin + number].Primitive;
+    }
+    reader.ReadRecords(primitives, count, records);
+    records += count * words;
+    begin += count;
+  }
+}
+
 std::vector<std::uint64_t> SortedCells::Divide(const Cell& cell, int bits) const
 {
   const std::size_t parts = std::size_t(1) << bits;

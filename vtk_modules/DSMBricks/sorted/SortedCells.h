@@ -32,12 +32,14 @@ public:
   std::uint64_t GetCount() const { return this->Cells.size(); }
   /// Over all ranks.
   std::uint64_t GetPrimitiveCount(std::uint64_t cell) const { return this->Cells[cell].Count; }
-  /// This rank's part of the cell: numbers of primitives of the reader, `second` past the last.
+  /// This rank's part of the cell in the order of all its primitives; `second` is past the last.
   std::pair<std::uint64_t, std::uint64_t> GetRange(std::uint64_t cell) const
   {
     return { this->Cells[cell].Begin, this->Cells[cell].End };
   }
-  std::uint64_t GetPrimitive(std::uint64_t index) const { return this->Keys[index].Primitive; }
+  /// Writes the records of primitives [begin, end) of the range of a cell. Any thread.
+  void ReadRecords(const RecordReader& reader, std::uint64_t begin, std::uint64_t end,
+    std::uint32_t* records) const;
 
 private:
   struct Key

@@ -2,6 +2,7 @@
 #include "vtkDSMGridCells.h"
 
 #include "DSMBricks/base/ParallelFor.h"
+#include "DSMBricks/base/PrefetchLine.h"
 #include "DSMCore/base/Error.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -433,6 +434,27 @@ void vtkDSMGridCells::ReadCells(std::uint64_t first, std::size_t count,
       ++done;
     }
   }
+}
+
+void vtkDSMGridCells::ReadCorners(
+  const std::uint64_t* cells, std::size_t count, std::uint64_t (*points)[MostCorners]) const
+{
+  const Piece& piece = this->Pieces.front();
+  if (this->Pieces.size() == 1 && piece.Size.x == 0 && !piece.Cut)
+  {
+    // They are anywhere in memory.
+    std::for_each(cells, cells + count,
+      [&piece](std::uint64_t cell) { bricks::PrefetchLine(piece.Offsets.GetAddress(cell)); });
+    std::for_each(cells, cells + count,
+      [&piece](std::uint64_t cell)
+      {
+        const auto begin = static_cast<std::uint64_t>(piece.Offsets.Get(cell));
+        bricks::PrefetchLine(piece.Connectivity.GetAddress(begin));
+        bricks::PrefetchLine(piece.Connectivity.GetAddress(begin + 7));
+        bricks::PrefetchLine(piece.Types.data() + cell);
+      });
+  }
+  this->CellSource::ReadCorners(cells, count, points);
 }
 
 bool vtkDSMGridCells::IsShown(const Place& cell) const

@@ -60,6 +60,8 @@ public:
   bool IsShown(std::uint64_t cell) const override;
   void ReadCells(std::uint64_t first, std::size_t count, std::uint64_t (*points)[MostCorners],
     bool* areShown) const override;
+  void ReadCorners(const std::uint64_t* cells, std::size_t count,
+    std::uint64_t (*points)[MostCorners]) const override;
   void GetPosition(std::uint64_t point, double position[3]) const override;
 
   /// A cell or a point of one of the grids.
@@ -107,6 +109,10 @@ private:
     std::int64_t Get(std::uint64_t index) const
     {
       return this->Narrow ? this->Narrow[index] : this->Wide[index];
+    }
+    const void* GetAddress(std::uint64_t index) const
+    {
+      return this->Narrow ? static_cast<const void*>(this->Narrow + index) : this->Wide + index;
     }
   };
   /// At most eight points of a cell that is cut.
