@@ -6,8 +6,9 @@ in one process.
         [--kinds tetrahedra,hexahedra] [--cells 100000,1000000] [--volumes 100000] [--mappers NAMES] [--threads 0]
         [--repeat 3]
 
-Prints for each grid the seconds to the first picture of an isosurface, which makes bricks or the contour, and to that of
-a new isovalue (the median); and for grids of at most --volumes cells those of a volume by each of ParaView's mappers.
+Prints for each grid the seconds to the first picture of an isosurface, which makes bricks or the contour, and to that
+of a new isovalue (the median); and for grids of at most --volumes cells those of a volume by each of ParaView's
+mappers.
 """
 import argparse
 import os
@@ -107,7 +108,8 @@ def measure_surface(source, view, options):
     contoured = time_isovalues(view, set_theirs, isovalues[1:])
     triangles = contour.GetDataInformation().GetNumberOfCells()
     simple.Delete(contour)
-    print(f"  surface: first picture {first:.2f} s, Contour's {first_contour:.2f} s, ratio {first / first_contour:.2f}; "
+    print(f"  surface: first picture {first:.2f} s, Contour's {first_contour:.2f} s, "
+          f"ratio {first / first_contour:.2f}; "
           f"new isovalue {traced:.3f} s, Contour's {contoured:.2f} s ({triangles} triangles), "
           f"ratio 1/{contoured / traced:.1f}; camera moved {statistics.median(moving):.3f} s", flush=True)
     return ours
@@ -158,6 +160,7 @@ def main():
             source = simple.PVTrivialProducer()
             source.GetClientSideObject().SetOutput(grid)
             source.UpdatePipeline()
+            source.GetDataInformation()  # ranges of arrays, for which else the first of both waits
             print(f"{kind}, {grid.GetNumberOfCells()} cells, load {os.getloadavg()[0]:.1f}:", flush=True)
             ours = measure_surface(source, view, options)
             if cells <= options.volumes:

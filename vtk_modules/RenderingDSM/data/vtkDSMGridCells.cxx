@@ -442,7 +442,7 @@ void vtkDSMGridCells::ReadCorners(
   const Piece& piece = this->Pieces.front();
   if (this->Pieces.size() == 1 && piece.Size.x == 0 && !piece.Cut)
   {
-    // They are anywhere in memory.
+    // They are anywhere in memory. Numbers of the only piece are those of all.
     std::for_each(cells, cells + count,
       [&piece](std::uint64_t cell) { bricks::PrefetchLine(piece.Offsets.GetAddress(cell)); });
     std::for_each(cells, cells + count,
@@ -453,6 +453,11 @@ void vtkDSMGridCells::ReadCorners(
         bricks::PrefetchLine(piece.Connectivity.GetAddress(begin + 7));
         bricks::PrefetchLine(piece.Types.data() + cell);
       });
+    for (std::size_t number = 0; number < count; ++number)
+    {
+      this->FindOwnCorners(piece, cells[number], points[number]);
+    }
+    return;
   }
   this->CellSource::ReadCorners(cells, count, points);
 }
