@@ -222,4 +222,37 @@ TEST(SortedBricks, SayWhatDoesNotFit)
     });
 }
 
+/// As a user's abort does: while primitives are sorted, and while bricks are built.
+TEST(SortedBricks, EndOnAllRanksWhereProgressThrowsOnOne)
+{
+  for (const double end : { 0.0, 0.4 })
+  {
+    RunOnCluster(3,
+      [end](dsm::Messenger& messenger)
+      {
+        DropReader reader(CreateDrops());
+        bricks::SortedBrickSettings settings;
+        settings.BrickBytes = 1600;
+        const auto giveUp = [&](double part)
+        {
+          if (messenger.GetRank() == 1 && part >= end)
+          {
+            throw dsm::Error("that is enough");
+          }
+        };
+        try
+        {
+          bricks::SortedBrickBuilder builder("drops", reader, settings, messenger, giveUp);
+          EXPECT_GT(end, 0.2);
+          builder.Build(giveUp);
+          ADD_FAILURE() << "nothing was thrown";
+        }
+        catch (const dsm::Error& error)
+        {
+          EXPECT_STREQ(error.what(), "drops: Rank 1: that is enough");
+        }
+      });
+  }
+}
+
 } // namespace

@@ -69,8 +69,9 @@ SortedBrickBuilder::SortedBrickBuilder(std::string_view what, RecordReader& read
       1.0, static_cast<double>(this->Kind.LargestCount)));
   const auto ofSorting = [&](double done)
   { progress(EndOfBounds + (EndOfSorting - EndOfBounds) * done); };
-  this->Cells.emplace(this->Reader, this->Order, this->LargestCount, this->Settings.Threads,
-    this->Messages, progress ? dsm::FunctionRef<void(double)>(ofSorting) : progress);
+  this->Cells.emplace(this->What, this->Reader, this->Order, this->LargestCount,
+    this->Settings.Threads, this->Messages,
+    progress ? dsm::FunctionRef<void(double)>(ofSorting) : progress);
   for (std::uint64_t cell = 0; cell < this->Cells->GetCount(); ++cell)
   {
     this->Count += this->Cells->GetPrimitiveCount(cell);

@@ -15,8 +15,6 @@ namespace bricks
 namespace
 {
 
-constexpr const char* What = "Sorting primitives";
-
 constexpr std::size_t KeyChunk = std::size_t(1) << 14;
 
 /// Part of the time that reading the keys takes.
@@ -31,17 +29,17 @@ constexpr std::size_t MostCells = std::size_t(1) << 14;
 
 } // namespace
 
-SortedCells::SortedCells(const RecordReader& reader, const MortonCode& order,
+SortedCells::SortedCells(std::string_view what, const RecordReader& reader, const MortonCode& order,
   std::uint64_t largestCount, int threads, dsm::Messenger& messenger,
   dsm::FunctionRef<void(double)> progress)
 {
-  messenger.RunTogether(What,
+  messenger.RunTogether(what,
     [&]
     {
       this->ReadKeys(reader, order, threads, progress);
       this->SortKeys(threads, progress);
     });
-  this->FindCells(largestCount, messenger);
+  this->FindCells(what, largestCount, messenger);
 }
 
 void SortedCells::ReadKeys(const RecordReader& reader, const MortonCode& order, int threads,
@@ -162,7 +160,8 @@ std::vector<std::uint64_t> SortedCells::Divide(const Cell& cell, int bits) const
   return bounds;
 }
 
-void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenger)
+void SortedCells::FindCells(
+  std::string_view what, std::uint64_t largestCount, dsm::Messenger& messenger)
 {
   // All cells of one generation have the same number of bits.
   std::vector<Cell> open;
@@ -180,9 +179,9 @@ void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenge
       this->Cells.push_back(cell);
     }
   };
-  messenger.RunTogether(What, [&] { counts.assign(1, this->KeyCount); });
+  messenger.RunTogether(what, [&] { counts.assign(1, this->KeyCount); });
   messenger.Sum(counts);
-  messenger.RunTogether(What, [&] { add({ 0, 0, 0, this->KeyCount, counts.front() }); });
+  messenger.RunTogether(what, [&] { add({ 0, 0, 0, this->KeyCount, counts.front() }); });
   for (int step = FirstBits; !next.empty(); step = FurtherBits)
   {
     open = std::exchange(next, {});
@@ -191,7 +190,7 @@ void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenge
     for (std::size_t first = 0; first < open.size(); first += MostCells)
     {
       const std::size_t last = std::min(first + MostCells, open.size());
-      messenger.RunTogether(What,
+      messenger.RunTogether(what,
         [&]
         {
           bounds.clear();
@@ -206,7 +205,7 @@ void SortedCells::FindCells(std::uint64_t largestCount, dsm::Messenger& messenge
           }
         });
       messenger.Sum(counts);
-      messenger.RunTogether(What,
+      messenger.RunTogether(what,
         [&]
         {
           for (std::size_t cell = first; cell < last; ++cell)

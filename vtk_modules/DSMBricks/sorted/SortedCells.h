@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,9 +25,10 @@ namespace bricks
 class SortedCells
 {
 public:
-  /// Collective. Throws dsm::Error on every rank alike. `progress` may be empty.
-  SortedCells(const RecordReader& reader, const MortonCode& order, std::uint64_t largestCount,
-    int threads, dsm::Messenger& messenger, dsm::FunctionRef<void(double)> progress);
+  /// Collective. Throws dsm::Error on every rank alike; `what` names the primitives in it. `progress` may be empty.
+  SortedCells(std::string_view what, const RecordReader& reader, const MortonCode& order,
+    std::uint64_t largestCount, int threads, dsm::Messenger& messenger,
+    dsm::FunctionRef<void(double)> progress);
 
   /// Cells are numbered along the curve; none is empty.
   std::uint64_t GetCount() const { return this->Cells.size(); }
@@ -59,7 +61,7 @@ private:
   void ReadKeys(const RecordReader& reader, const MortonCode& order, int threads,
     dsm::FunctionRef<void(double)> progress);
   void SortKeys(int threads, dsm::FunctionRef<void(double)> progress);
-  void FindCells(std::uint64_t largestCount, dsm::Messenger& messenger);
+  void FindCells(std::string_view what, std::uint64_t largestCount, dsm::Messenger& messenger);
   /// Returns the begins of the parts of a cell that share `bits` more bits, and the end of the last
   /// part.
   std::vector<std::uint64_t> Divide(const Cell& cell, int bits) const;
