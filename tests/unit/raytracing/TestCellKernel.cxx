@@ -23,6 +23,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <tuple>
 #include <vector>
 
 namespace
@@ -91,41 +92,49 @@ public:
     return packet;
   }
 
-  CellKernel::Cell CreateCell(const CellPacket& packet)
+  CellKernel::Group CreateGroup()
   {
-    CellKernel::Cell cell;
+    CellKernel::Group group;
     const bool whole = this->Random() % 2 == 0;
     const int flat = static_cast<int>(this->Random() % 8); // an axis, or none
-    cell.Corners = this->Random() % 2 == 0 ? 4 : 8;
-    std::array<float, 3> points[8];
-    for (int corner = 0; corner < cell.Corners; ++corner)
+    group.PointCount = 8 + this->GetCount(20);
+    for (int number = 0; number < group.PointCount; ++number)
     {
+      CellKernel::Group::Point& point = group.Points[number];
       for (int axis = 0; axis < 3; ++axis)
       {
-        points[corner][axis] =
+        point.Place[axis] =
           axis == flat ? 1.0f : static_cast<float>(this->GetNumber(whole, 0.0, 4.0));
       }
       if (this->Random() % 8 == 0)
       {
-        points[corner] = points[0];
+        std::copy_n(group.Points[0].Place, 3, point.Place);
       }
-      cell.Values[corner] = static_cast<float>(this->GetNumber(whole, -2.0, 2.0));
+      point.Value = static_cast<float>(this->GetNumber(whole, -2.0, 2.0));
     }
-    for (int corner = 0; corner < cell.Corners; ++corner)
+    group.Corners = this->Random() % 2 == 0 ? 4 : 8;
+    group.CellCount = this->GetCount(CellKernel::Group::MostCells);
+    int parts = 0;
+    for (int index = 0; index < group.CellCount; ++index)
     {
-      for (int place = 0; place < 3; ++place)
+      CellKernel::Group::Cell& cell = group.Cells[index];
+      std::array<std::uint8_t, CellKernel::Group::MostPoints> points;
+      std::iota(points.begin(), points.end(), std::uint8_t{ 0 });
+      std::shuffle(points.begin(), points.begin() + group.PointCount, this->Random);
+      std::copy_n(points.begin(), CellKernel::Group::MostCorners, cell.At);
+      cell.FirstPart = static_cast<std::uint8_t>(parts);
+      cell.Parts = group.Corners == 4 ? 1 : bricks::MostTetrahedra;
+      const bricks::SplitTetrahedra& split = bricks::Splits[this->Random() % bricks::SplitCodes];
+      for (int part = 0; part < cell.Parts; ++part, ++parts)
       {
-        cell.Points[place][corner] = points[corner][packet.Axes[place]];
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          group.Tetrahedra[parts][corner] =
+            cell.At[group.Corners == 4 ? corner : split.Corners[part][corner]];
+        }
       }
     }
-    cell.Parts = cell.Corners == 4 ? 1 : bricks::MostTetrahedra;
-    std::iota(cell.Tetrahedra[0], cell.Tetrahedra[0] + 4, std::uint8_t{ 0 });
-    if (cell.Corners == 8)
-    {
-      bricks::SplitHexahedronBy(
-        [&](int one, int other) { return points[one] < points[other]; }, cell.Tetrahedra);
-    }
-    return cell;
+    return group;
   }
 
   std::mt19937 Random;
@@ -133,34 +142,25 @@ public:
 
 /// What a ray crosses by itself, in the order of the tetrahedra.
 std::vector<CellKernel::Crossing> FindAlone(
-  const rt::ShearedRay& ray, const CellKernel::Cell& cell, const CellPacket& packet)
+  const rt::ShearedRay& ray, const CellKernel::Group& group, const CellPacket& packet)
 {
-  double least[2] = { HUGE_VAL, HUGE_VAL };
-  double most[2] = { -HUGE_VAL, -HUGE_VAL };
-  SeenPoint seen[8];
-  for (int corner = 0; corner < cell.Corners; ++corner)
-  {
-    float point[3];
-    for (int place = 0; place < 3; ++place)
-    {
-      point[packet.Axes[place]] = cell.Points[place][corner];
-    }
-    seen[corner].Set(ray.Triangles, point, cell.Values[corner]);
-    least[0] = std::min(least[0], seen[corner].X);
-    least[1] = std::min(least[1], seen[corner].Y);
-    most[0] = std::max(most[0], seen[corner].X);
-    most[1] = std::max(most[1], seen[corner].Y);
-  }
   std::vector<CellKernel::Crossing> found;
-  if (std::max(least[0], least[1]) > 0.0 || std::min(most[0], most[1]) < 0.0)
+  const CellKernel::Group::Cell& last = group.Cells[group.CellCount - 1];
+  for (int part = 0; part < last.FirstPart + last.Parts; ++part)
   {
-    return found;
-  }
-  for (int part = 0; part < cell.Parts; ++part)
-  {
-    const std::uint8_t* const at = cell.Tetrahedra[part];
+    SeenPoint seen[4];
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const CellKernel::Group::Point& from = group.Points[group.Tetrahedra[part][corner]];
+      float point[3];
+      for (int place = 0; place < 3; ++place)
+      {
+        point[packet.Axes[place]] = from.Place[place];
+      }
+      seen[corner].Set(ray.Triangles, point, from.Value);
+    }
     TetrahedronCrossing crossing;
-    if (crossing.Find(ray.Triangles, seen[at[0]], seen[at[1]], seen[at[2]], seen[at[3]]) &&
+    if (crossing.Find(ray.Triangles, seen[0], seen[1], seen[2], seen[3]) &&
       crossing.Exit >= ray.Triangles.Min && crossing.Enter <= ray.Triangles.Max)
     {
       found.push_back({ crossing.Enter, crossing.Exit, crossing.First, crossing.Last, 0,
@@ -174,26 +174,27 @@ TEST(CellKernelTest, CrossesTetrahedraAsRaysAlone)
 {
   Source source(5);
   std::size_t all = 0;
-  for (int round = 0; round < 2000; ++round)
+  for (int round = 0; round < 400; ++round)
   {
     std::vector<rt::ShearedRay> rays;
     const CellPacket packet = source.CreatePacket(rays);
-    const CellKernel::Cell cell = source.CreateCell(packet);
+    const CellKernel::Group group = source.CreateGroup();
     const rt::RayMask lanes =
       (rt::RayMask{ source.Random() } << 32 | source.Random() | 1) & packet.GetLanes();
     for (const CellKernel& kernel : CellKernel::GetAll())
     {
       SCOPED_TRACE(testing::Message() << kernel.Name << ", round " << round);
       CellKernel::Crossing crossings[CellKernel::MostCrossings];
-      const int count = kernel.FindCrossings(packet, lanes, cell, crossings);
+      const int count = kernel.FindCrossings(packet, lanes, group, crossings);
       std::vector<CellKernel::Crossing> found(crossings, crossings + count);
-      std::stable_sort(found.begin(), found.end(),
-        [](const auto& one, const auto& other) { return one.Lane < other.Lane; });
+      std::sort(found.begin(), found.end(),
+        [](const auto& one, const auto& other)
+        { return std::tie(one.Lane, one.Part) < std::tie(other.Lane, other.Part); });
       std::size_t next = 0;
       rt::ForEachRay(lanes,
         [&](int lane)
         {
-          for (const CellKernel::Crossing& alone : FindAlone(rays[lane], cell, packet))
+          for (const CellKernel::Crossing& alone : FindAlone(rays[lane], group, packet))
           {
             ASSERT_LT(next, found.size());
             const CellKernel::Crossing& one = found[next++];

@@ -78,6 +78,11 @@ template <class Reference>
 Reference WideBvhBuilder<Reference>::BuildNode(const Range& range, int depth)
 {
   const bool byNumber = depth > LargestSplitDepth;
+  std::uint32_t smallest = this->LeafSize; // of a child
+  while (this->Shape == WideBvhShape::Full && smallest * Node::Width < range.GetCount())
+  {
+    smallest *= Node::Width;
+  }
   Range children[Node::Width];
   float sizes[Node::Width]; // -1 for a leaf
   int count = 1;
@@ -85,9 +90,9 @@ Reference WideBvhBuilder<Reference>::BuildNode(const Range& range, int depth)
   const auto rate = [&](int child)
   {
     const std::uint32_t items = children[child].GetCount();
-    sizes[child] = items <= this->LeafSize ? -1.0f
-      : byNumber                           ? static_cast<float>(items)
-                                           : children[child].Box.GetArea();
+    sizes[child] = items <= smallest ? -1.0f
+      : byNumber                     ? static_cast<float>(items)
+                                     : children[child].Box.GetArea();
   };
   rate(0);
   while (count < Node::Width)
@@ -98,7 +103,7 @@ Reference WideBvhBuilder<Reference>::BuildNode(const Range& range, int depth)
       break;
     }
     const Range parent = children[largest];
-    this->Split(parent, byNumber, children[largest], children[count]);
+    this->Split(parent, byNumber, smallest, children[largest], children[count]);
     rate(largest);
     rate(count);
     ++count;
@@ -120,12 +125,16 @@ Reference WideBvhBuilder<Reference>::BuildNode(const Range& range, int depth)
 
 template <class Reference>
 void WideBvhBuilder<Reference>::Split(
-  const Range& range, bool byNumber, Range& first, Range& second)
+  const Range& range, bool byNumber, std::uint32_t step, Range& first, Range& second)
 {
   std::uint32_t middle = range.Begin + range.GetCount() / 2;
   int axis = 0;
   int bin = 0;
-  if (!byNumber && this->FindPlane(range, axis, bin))
+  if (this->Shape == WideBvhShape::Full)
+  {
+    middle = this->SplitFull(range, step);
+  }
+  else if (!byNumber && this->FindPlane(range, axis, bin))
   {
     const Binning binning(range.Centers, Bins);
     const auto isFirst = [&](std::uint32_t item)
@@ -143,6 +152,30 @@ void WideBvhBuilder<Reference>::Split(
   const std::uint32_t end = range.End;
   first = this->Measure(begin, middle);
   second = this->Measure(middle, end);
+}
+
+template <class Reference>
+std::uint32_t WideBvhBuilder<Reference>::SplitFull(const Range& range, std::uint32_t step)
+{
+  float size[4];
+  (range.Centers.Upper - range.Centers.Lower).Store(size);
+  const auto axis = std::max_element(size, size + 3) - size;
+  const auto getCenter = [&](std::uint32_t item)
+  {
+    float center[4];
+    (this->Boxes[item].Lower + this->Boxes[item].Upper).Store(center);
+    return center[axis];
+  };
+  const std::uint32_t middle = range.Begin + (range.GetCount() + step) / 2 / step * step;
+  const auto begin = this->Order.begin();
+  std::nth_element(begin + range.Begin, begin + middle, begin + range.End,
+    [&](std::uint32_t one, std::uint32_t other)
+    {
+      const float a = getCenter(one);
+      const float b = getCenter(other);
+      return a != b ? a < b : one < other;
+    });
+  return middle;
 }
 
 template <class Reference>

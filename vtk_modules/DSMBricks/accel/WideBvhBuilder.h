@@ -11,9 +11,14 @@
 namespace bricks
 {
 
-/// Builds hierarchies of wide nodes, top down, with the surface area heuristic over bins (Wald
-/// 2007); a node splits its largest child until it has eight. One for each thread; keeps its
-/// storage from one hierarchy to the next.
+/// How a hierarchy is built.
+enum class WideBvhShape
+{
+  ByArea, ///< with the surface area heuristic over bins (Wald 2007); a node splits its largest child until it has eight
+  Full ///< in the fewest nodes: all but the last of a level have eight children; split where their longest edge is
+};
+
+/// Builds hierarchies of wide nodes, top down. One for each thread; keeps its storage from one hierarchy to the next.
 ///
 /// The result depends on the boxes and their order alone.
 template <class Reference>
@@ -23,8 +28,9 @@ public:
   using Node = WideBvhNode<Reference>;
 
   /// `leafSize`: items that are intersected together, at most four.
-  explicit WideBvhBuilder(std::uint32_t leafSize)
+  explicit WideBvhBuilder(std::uint32_t leafSize, WideBvhShape shape = WideBvhShape::ByArea)
     : LeafSize(leafSize)
+    , Shape(shape)
   {
   }
 
@@ -61,13 +67,17 @@ private:
   static constexpr int LargestSplitDepth = 20;
 
   Reference BuildNode(const Range& range, int depth);
-  void Split(const Range& range, bool byNumber, Range& first, Range& second);
+  void Split(const Range& range, bool byNumber, std::uint32_t step, Range& first, Range& second);
+  /// Parts items across the longest edge of the box of their centers. Returns where: behind `step` items or a multiple
+  /// of that, about in the middle.
+  std::uint32_t SplitFull(const Range& range, std::uint32_t step);
   /// False when no plane parts the items.
   bool FindPlane(const Range& range, int& axis, int& bin) const;
   Range Measure(std::uint32_t begin, std::uint32_t end) const;
   void SetBounds(Node& node, const BoundingBox& box, const Range* children, int count) const;
 
   std::uint32_t LeafSize;
+  WideBvhShape Shape;
   const BoundingBox* Boxes = nullptr;
   std::vector<std::uint32_t> Order;
   std::vector<Node> Nodes;

@@ -3,8 +3,12 @@
 #define bricks_CellBrick_h
 
 #include "DSMBricks/accel/WideBvhNode.h"
+#include "DSMBricks/cells/PackedBits.h"
 #include "DSMBricks/cells/PackedGradient.h"
+#include "DSMBricks/cells/PackedPlaces.h"
+#include "DSMBricks/cells/SplitCell.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -12,19 +16,43 @@
 namespace bricks
 {
 
+/// Up to eight cells of a brick, and their points, each once.
+struct CellGroup
+{
+  static constexpr int MostCells = 8;
+  static constexpr int MostCorners = 8;
+  static constexpr int MostPoints = MostCells * MostCorners;
+
+  int Cells;
+  int Corners; ///< of each cell: 4 or 8
+  int Points;
+  std::uint16_t Numbers[MostPoints];       ///< of the points in the brick
+  std::uint8_t At[MostCells][MostCorners]; ///< the corners: places in Numbers, in VTK's order
+  SplitCode Splits[MostCells];             ///< of hexahedra
+  static constexpr std::uint8_t OneTetrahedron[1][4] = { { 0, 1, 2, 3 } };
+
+  ///@{
+  /// The tetrahedra that a cell is split into: numbers of its corners.
+  int CountParts() const { return this->Corners == 4 ? 1 : MostTetrahedra; }
+  const std::uint8_t (*GetParts(int cell) const)[4]
+  {
+    return this->Corners == 4 ? OneTetrahedron : bricks::Splits[this->Splits[cell]].Corners;
+  }
+  ///@}
+};
+
 /// Header of a brick of cells: their points and corners, and a hierarchy over groups of up to eight cells, but no
 /// values. Layout of the block, in this order:
 ///
 ///   this header   64 bytes
 ///   nodes         80 bytes each (WideBvhNode); the first one is the root; a leaf is one group
-///   points        three floats each, in the space of the bricks: the same point has the same bits in all bricks, so no
-///                 ray slips between them
-///   corners       16-bit numbers of points, header.Corners a cell, the cells of a group one after the other; none for
-///                 a brick of a structured grid
-///   shown         a byte for each cell of a structured grid, x fastest, 1 where it is shown; none where all are
+///   points        PackedPlaces, in the space of the bricks: the same point has the same bits in all bricks, so no ray
+///                 slips between them
+///   groups        a CellGroupHead each, then their bytes; none for a brick of a structured grid
+///   splits        of the cells of a structured grid, a SplitCode each, x fastest; Hidden: the cell is not shown
 ///
 /// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block. In a brick that is not of
-/// a grid, points are in ascending order of x, then y, then z, and so in the same order in all bricks that have them.
+/// a grid, points are in the order in which groups have them first.
 struct CellBrickHeader
 {
   std::uint32_t BlockBytes;
@@ -36,28 +64,47 @@ struct CellBrickHeader
   std::uint16_t
     GridCells[3]; ///< on each axis, x fastest; 0 for a brick that is not of a structured grid
   std::uint32_t PointOffset;
-  std::uint32_t CornerOffset; ///< 0 for a brick of a grid
-  std::uint32_t ShownOffset;  ///< 0: all are shown
-  std::uint8_t Unused[32];
+  std::uint32_t GroupOffset; ///< 0 for a brick of a grid
+  std::uint32_t SplitOffset; ///< 0 for a brick that is not
+  PackedPlacesHeader Places;
+  std::uint8_t Unused[16];
 
   static constexpr std::uint32_t NodeOffset = 64;
   /// Cells of a group, at most.
-  static constexpr int GroupSize = 8;
+  static constexpr int GroupSize = CellGroup::MostCells;
   /// Groups are numbered with 13 bits in the leaves of the tree.
   static constexpr std::uint32_t MostGroups = 8191;
   static constexpr std::uint32_t MostCells = GroupSize * MostGroups;
   static constexpr std::uint32_t MostPoints = 65535;
+  static constexpr SplitCode Hidden = 255;
+
+  int GetBitsOfPoint() const { return CountBits(this->Points - 1u); }
 };
 
 static_assert(sizeof(CellBrickHeader) == CellBrickHeader::NodeOffset, "nodes follow");
+
+/// Where a group of a brick that is not of a grid is. Its bytes: a SplitCode for each hexahedron; then, in bits, the
+/// corners of its cells, as places among its points, the new ones first; then the numbers of the points that groups
+/// before it have, too. A corner has as few bits as the group's last point needs, a number as few as the brick's last
+/// point needs.
+struct CellGroupHead
+{
+  std::uint32_t Offset; ///< of its bytes, from the end of all heads
+  std::uint16_t
+    FirstNew; ///< number of the first point that no group before it has; the others follow
+  std::uint8_t New;
+  std::uint8_t Old;
+
+  int GetBitsOfCorner() const { return CountBits(this->New + this->Old - 1u); }
+};
+
+static_assert(sizeof(CellGroupHead) == 8, "no padding");
 
 /// The bytes of a brick of cells. A view: valid as long as the block is.
 class CellBrick
 {
 public:
   using Node = WideBvhNode<std::uint16_t>;
-  static constexpr int GroupSize = CellBrickHeader::GroupSize;
-  static constexpr int MostCorners = 8;
 
   explicit CellBrick(const std::byte* block)
     : Block(block)
@@ -72,43 +119,24 @@ public:
   {
     return reinterpret_cast<const Node*>(this->Block + CellBrickHeader::NodeOffset);
   }
-  /// Three coordinates; a fourth float can be read, too.
-  const float* GetPoint(std::uint32_t point) const
-  {
-    return reinterpret_cast<const float*>(this->Block + this->GetHeader().PointOffset) + 3 * point;
-  }
+  void GetPoint(std::uint32_t point, float place[3]) const { this->GetPlaces().Get(point, place); }
   bool IsOfGrid() const { return this->GetHeader().GridCells[0] != 0; }
 
   /// The group that a leaf refers to.
   static std::uint32_t GetGroup(std::uint16_t leaf) { return leaf & MostNumber; }
 
-  /// Writes the corners of the shown cells of a group: as many as header.Corners each, in VTK's order. Returns how
-  /// many cells there are.
-  int ReadGroup(std::uint32_t group, std::uint16_t corners[GroupSize][MostCorners]) const
+  /// Reads the shown cells of a group.
+  void ReadGroup(std::uint32_t number, CellGroup& group) const
   {
-    const CellBrickHeader& header = this->GetHeader();
+    group.Corners = this->GetHeader().Corners;
     if (this->IsOfGrid())
     {
-      return this->ReadGroupOfGrid(group, corners);
+      this->ReadGroupOfGrid(number, group);
     }
-    const std::uint32_t first = group * GroupSize;
-    const std::uint32_t left = header.Cells - first;
-    const int count = left < GroupSize ? static_cast<int>(left) : GroupSize;
-    const auto* from = reinterpret_cast<const std::uint16_t*>(this->Block + header.CornerOffset) +
-      std::size_t(first) * header.Corners;
-    for (int cell = 0; cell < count; ++cell, from += header.Corners)
+    else
     {
-      // Copies of a constant size need no call.
-      if (header.Corners == MostCorners)
-      {
-        std::memcpy(corners[cell], from, MostCorners * sizeof(std::uint16_t));
-      }
-      else
-      {
-        std::memcpy(corners[cell], from, 4 * sizeof(std::uint16_t));
-      }
+      this->ReadOtherGroup(number, group);
     }
-    return count;
   }
 
   /// Groups of a grid are boxes of 2 x 2 x 2 cells, x fastest.
@@ -119,41 +147,106 @@ public:
     groups[2] = (cells[2] + 1u) / 2u;
   }
 
+  PackedPlaces GetPlaces() const
+  {
+    const CellBrickHeader& header = this->GetHeader();
+    return { header.Places, this->Block + header.PointOffset };
+  }
+
 private:
   static constexpr std::uint16_t MostNumber = 0x1fffu;
 
-  int ReadGroupOfGrid(std::uint32_t group, std::uint16_t corners[GroupSize][MostCorners]) const
+  void ReadOtherGroup(std::uint32_t number, CellGroup& group) const
+  {
+    const CellBrickHeader& header = this->GetHeader();
+    const std::byte* const heads = this->Block + header.GroupOffset;
+    const CellGroupHead& head = reinterpret_cast<const CellGroupHead*>(heads)[number];
+    const std::byte* bytes = heads + header.Groups * sizeof(CellGroupHead) + head.Offset;
+    group.Cells = std::min(header.Cells - static_cast<int>(number) * CellBrickHeader::GroupSize,
+      CellBrickHeader::GroupSize);
+    group.Points = head.New + head.Old;
+    for (int point = 0; point < head.New; ++point)
+    {
+      group.Numbers[point] = static_cast<std::uint16_t>(head.FirstNew + point);
+    }
+    if (group.Corners == CellGroup::MostCorners)
+    {
+      std::memcpy(group.Splits, bytes, static_cast<std::size_t>(group.Cells));
+      bytes += group.Cells;
+    }
+    const int bits = head.GetBitsOfCorner();
+    const std::uint64_t mask = (1u << bits) - 1u;
+    std::size_t bit = 0;
+    for (int cell = 0; cell < group.Cells; ++cell)
+    {
+      std::uint64_t word = ReadBits(bytes, bit);
+      for (int corner = 0; corner < group.Corners; ++corner, word >>= bits)
+      {
+        group.At[cell][corner] = static_cast<std::uint8_t>(word & mask);
+      }
+      bit += static_cast<std::size_t>(group.Corners * bits);
+    }
+    const int bitsOfPoint = header.GetBitsOfPoint();
+    const std::uint64_t maskOfPoint = (1u << bitsOfPoint) - 1u;
+    for (int point = head.New; point < group.Points; ++point)
+    {
+      group.Numbers[point] = static_cast<std::uint16_t>(ReadBits(bytes, bit) & maskOfPoint);
+      bit += static_cast<std::size_t>(bitsOfPoint);
+    }
+  }
+
+  void ReadGroupOfGrid(std::uint32_t number, CellGroup& group) const
   {
     const CellBrickHeader& header = this->GetHeader();
     std::uint32_t groups[3];
     GetGroupsOfGrid(header.GridCells, groups);
-    const std::uint32_t first[3] = { group % groups[0] * 2u, group / groups[0] % groups[1] * 2u,
-      group / (groups[0] * groups[1]) * 2u };
+    const std::uint32_t first[3] = { number % groups[0] * 2u, number / groups[0] % groups[1] * 2u,
+      number / (groups[0] * groups[1]) * 2u };
+    std::uint32_t cells[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      cells[axis] = std::min(header.GridCells[axis] - first[axis], 2u);
+    }
     const std::uint32_t row = header.GridCells[0] + 1u;
     const std::uint32_t slice = row * (header.GridCells[1] + 1u);
-    const auto* const shown =
-      reinterpret_cast<const std::uint8_t*>(this->Block + header.ShownOffset);
-    int count = 0;
-    for (std::uint32_t part = 0; part < GroupSize; ++part)
+    group.Points = 0;
+    for (std::uint32_t z = first[2]; z <= first[2] + cells[2]; ++z)
     {
-      const std::uint32_t x = first[0] + (part & 1u);
-      const std::uint32_t y = first[1] + (part >> 1 & 1u);
-      const std::uint32_t z = first[2] + (part >> 2);
-      const std::uint32_t cell = x + header.GridCells[0] * (y + header.GridCells[1] * z);
-      if (x < header.GridCells[0] && y < header.GridCells[1] && z < header.GridCells[2] &&
-        (header.ShownOffset == 0 || shown[cell] != 0))
+      for (std::uint32_t y = first[1]; y <= first[1] + cells[1]; ++y)
       {
-        const std::uint32_t point = x + row * y + slice * z;
-        const std::uint32_t numbers[MostCorners] = { point, point + 1, point + row + 1, point + row,
-          point + slice, point + slice + 1, point + slice + row + 1, point + slice + row };
-        for (int corner = 0; corner < MostCorners; ++corner)
+        for (std::uint32_t x = first[0]; x <= first[0] + cells[0]; ++x)
         {
-          corners[count][corner] = static_cast<std::uint16_t>(numbers[corner]);
+          group.Numbers[group.Points++] = static_cast<std::uint16_t>(x + row * y + slice * z);
         }
-        ++count;
       }
     }
-    return count;
+    const auto* const splits = reinterpret_cast<const SplitCode*>(this->Block + header.SplitOffset);
+    const std::uint32_t rowOfGroup = cells[0] + 1u;
+    const std::uint32_t sliceOfGroup = rowOfGroup * (cells[1] + 1u);
+    group.Cells = 0;
+    for (std::uint32_t z = 0; z < cells[2]; ++z)
+    {
+      for (std::uint32_t y = 0; y < cells[1]; ++y)
+      {
+        for (std::uint32_t x = 0; x < cells[0]; ++x)
+        {
+          const SplitCode split = splits[first[0] + x +
+            header.GridCells[0] * (first[1] + y + header.GridCells[1] * (first[2] + z))];
+          if (split == CellBrickHeader::Hidden)
+          {
+            continue;
+          }
+          group.Splits[group.Cells] = split;
+          std::uint8_t* const at = group.At[group.Cells++];
+          const std::uint32_t lowest = x + rowOfGroup * y + sliceOfGroup * z;
+          for (std::uint32_t corner = 0; corner < CellGroup::MostCorners; ++corner)
+          {
+            at[HexahedronCorner(static_cast<int>(corner))] = static_cast<std::uint8_t>(lowest +
+              (corner & 1u) + rowOfGroup * (corner >> 1 & 1u) + sliceOfGroup * (corner >> 2));
+          }
+        }
+      }
+    }
   }
 
   const std::byte* Block;

@@ -12,7 +12,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -42,7 +41,7 @@ bool IsBefore(const CornerRecord& one, const CornerRecord& other)
 /// Bytes of a cell in a brick, approximately: corners, points, and nodes.
 double EstimateBytes(int corners)
 {
-  return corners == 4 ? 8.0 + 0.25 * 12.0 + 2.0 : 16.0 + 1.3 * 12.0 + 2.0;
+  return corners == 4 ? 6.0 + 0.25 * 8.0 + 2.0 : 11.0 + 1.25 * 8.0 + 2.0;
 }
 
 void GetCenter(const CornerRecord* corners, int count, double center[3])
@@ -56,46 +55,6 @@ void GetCenter(const CornerRecord* corners, int count, double center[3])
       sum += corners[corner].Place[axis];
     }
     center[axis] = sum * perCorner;
-  }
-}
-
-/// A number for a finite coordinate, in the same order.
-std::uint32_t ToOrdered(float coordinate)
-{
-  std::uint32_t bits;
-  std::memcpy(&bits, &coordinate, sizeof(bits));
-  constexpr std::uint32_t sign = std::uint32_t(1) << 31;
-  return (bits & sign) != 0 ? ~bits : bits | sign;
-}
-
-/// Sorts numbers of items by keys, and keeps the order of items of the same key. `other`: as large as `order`.
-void SortByKey(const std::vector<std::uint32_t>& keys, std::vector<std::uint32_t>& order,
-  std::vector<std::uint32_t>& other)
-{
-  constexpr int digitBits = 11;
-  constexpr std::size_t digits = std::size_t(1) << digitBits;
-  const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
-  const std::uint32_t lowest = *least;
-  const std::uint32_t range = *most - lowest;
-  for (int shift = 0; shift < 32 && range >> shift != 0; shift += digitBits)
-  {
-    const auto digitOf = [&](std::uint32_t item)
-    { return (keys[item] - lowest) >> shift & (digits - 1); };
-    std::uint32_t begins[digits] = {};
-    for (const std::uint32_t item : order)
-    {
-      ++begins[digitOf(item)];
-    }
-    std::uint32_t begin = 0;
-    for (std::uint32_t& ofDigit : begins)
-    {
-      begin += std::exchange(ofDigit, begin);
-    }
-    for (const std::uint32_t item : order)
-    {
-      other[begins[digitOf(item)]++] = item;
-    }
-    order.swap(other);
   }
 }
 
@@ -221,7 +180,7 @@ void CellRecordReader::SetSpace(const BrickSpace& space, int threads)
 }
 
 void CellRecordReader::Expand(
-  const std::uint64_t* given, std::uint64_t points[CellBrick::MostCorners]) const
+  const std::uint64_t* given, std::uint64_t points[CellSource::MostCorners]) const
 {
   if (this->GivenCorners == this->Corners)
   {
@@ -246,9 +205,9 @@ void CellRecordReader::FindCodes(
       {
         return;
       }
-      std::uint64_t points[CellBrick::MostCorners];
+      std::uint64_t points[CellSource::MostCorners];
       this->Expand(given, points);
-      CornerRecord corners[CellBrick::MostCorners];
+      CornerRecord corners[CellSource::MostCorners];
       bool isFinite = true;
       for (int corner = 0; corner < this->Corners; ++corner)
       {
@@ -295,7 +254,7 @@ void CellRecordReader::ReadBatch(
   }
   for (std::size_t number = 0; number < count; ++number)
   {
-    std::uint64_t points[CellBrick::MostCorners];
+    std::uint64_t points[CellSource::MostCorners];
     this->Expand(given[number], points);
     for (int corner = 0; corner < this->Corners; ++corner, ++corners)
     {
@@ -366,11 +325,11 @@ RecordBrick CellRecordBuilder::BuildBrick(const Key* keys, std::size_t count)
 {
   this->CollectPoints(keys, count);
   RecordBrick brick = this->Writer.Write(this->Points, this->CornerNumbers, this->Corners);
-  brick.Notes.reserve(2 * this->Sorted.size());
-  for (const CornerRecord& point : this->Sorted)
+  brick.Notes.reserve(2 * this->Found.size());
+  for (const std::uint16_t point : this->Writer.GetPointOrder())
   {
-    brick.Notes.push_back(point.Rank);
-    brick.Notes.push_back(point.Point);
+    brick.Notes.push_back(this->Found[point].Rank);
+    brick.Notes.push_back(this->Found[point].Point);
   }
   return brick;
 }
@@ -420,61 +379,19 @@ void CellRecordBuilder::CollectPoints(const Key* keys, std::size_t count)
   }
   this->Found.clear();
   this->EnlargeTable(size);
-  this->CornersFound.resize(each * count);
-  std::uint32_t* found = this->CornersFound.data();
+  this->CornerNumbers.resize(each * count);
+  std::uint16_t* number = this->CornerNumbers.data();
   for (std::size_t cell = 0; cell < count; ++cell)
   {
     for (std::size_t corner = 0; corner < each; ++corner)
     {
-      *found++ = this->FindPoint(keys[cell].Record[corner]);
+      *number++ = static_cast<std::uint16_t>(this->FindPoint(keys[cell].Record[corner]));
     }
   }
-  this->SortPoints();
-  this->Numbers.resize(this->Found.size());
   this->Points.clear();
-  this->Sorted.clear();
-  for (const std::uint32_t point : this->Order)
+  for (const CornerRecord& point : this->Found)
   {
-    this->Numbers[point] = static_cast<std::uint16_t>(this->Sorted.size());
-    this->Sorted.push_back(this->Found[point]);
-    this->Points.insert(this->Points.end(), this->Found[point].Place, this->Found[point].Place + 3);
-  }
-  this->CornerNumbers.resize(this->CornersFound.size());
-  std::transform(this->CornersFound.begin(), this->CornersFound.end(), this->CornerNumbers.begin(),
-    [this](std::uint32_t point) { return this->Numbers[point]; });
-}
-
-void CellRecordBuilder::SortPoints()
-{
-  const std::size_t count = this->Found.size();
-  this->Order.resize(count);
-  this->OtherOrder.resize(count);
-  std::iota(this->Order.begin(), this->Order.end(), 0u);
-  for (int axis = 2; axis >= 0; --axis)
-  {
-    this->Axis.resize(count);
-    std::transform(this->Found.begin(), this->Found.end(), this->Axis.begin(),
-      [axis](const CornerRecord& corner) { return ToOrdered(corner.Place[axis]); });
-    SortByKey(this->Axis, this->Order, this->OtherOrder);
-  }
-  const auto isSamePlace = [this](std::uint32_t one, std::uint32_t other)
-  {
-    return std::equal(this->Found[one].Place, this->Found[one].Place + 3, this->Found[other].Place);
-  };
-  for (auto first = this->Order.begin(); first != this->Order.end();)
-  {
-    auto last = first + 1;
-    while (last != this->Order.end() && isSamePlace(*first, *last))
-    {
-      ++last;
-    }
-    if (last - first > 1)
-    {
-      std::sort(first, last,
-        [this](std::uint32_t one, std::uint32_t other)
-        { return IsBefore(this->Found[one], this->Found[other]); });
-    }
-    first = last;
+    this->Points.insert(this->Points.end(), point.Place, point.Place + 3);
   }
 }
 

@@ -64,7 +64,7 @@ private:
   /// Reads records of at most CellsTogether cells.
   void ReadBatch(const std::uint64_t* primitives, std::size_t count, CornerRecord* corners) const;
   /// Points of a corner each, of those that the source gives for a cell.
-  void Expand(const std::uint64_t* given, std::uint64_t points[CellBrick::MostCorners]) const;
+  void Expand(const std::uint64_t* given, std::uint64_t points[CellSource::MostCorners]) const;
 
   const CellSource& Source;
   int Corners;
@@ -99,28 +99,20 @@ private:
   /// Sorts the cells by code, and cells of the same code by their corners.
   void SortCells(const std::uint32_t* records, std::size_t count);
   RecordBrick BuildBrick(const Key* keys, std::size_t count);
-  /// Numbers the points of some cells in ascending order.
+  /// Numbers the points of some cells.
   void CollectPoints(const Key* keys, std::size_t count);
   std::uint32_t FindPoint(const CornerRecord& corner);
   void EnlargeTable(std::size_t size);
   /// The entry of a point, or the free one where it belongs.
   Entry& FindEntry(const CornerRecord& corner);
-  /// Makes Order the numbers of the points in Found by place, and of the same place by source.
-  void SortPoints();
 
   int Corners;
   MortonCode Curve;
   std::uint32_t LargestCount;
   std::vector<Key> Keys;
-  std::vector<CornerRecord> Found;  ///< each point once
-  std::vector<CornerRecord> Sorted; ///< the same in ascending order
-  std::vector<Entry> Table;         ///< by hash
-  bool AreOfOneRank = false;        ///< all records
-  std::vector<std::uint32_t> CornersFound;
-  std::vector<std::uint32_t> Axis; ///< a coordinate of each point in Found, as a number
-  std::vector<std::uint32_t> Order;
-  std::vector<std::uint32_t> OtherOrder;
-  std::vector<std::uint16_t> Numbers; ///< of the points in Found, in ascending order
+  std::vector<CornerRecord> Found; ///< each point once
+  std::vector<Entry> Table;        ///< by hash
+  bool AreOfOneRank = false;       ///< all records
   std::vector<std::uint16_t> CornerNumbers;
   std::vector<float> Points;
   CellBrickWriter Writer;

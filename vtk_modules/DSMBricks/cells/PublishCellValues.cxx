@@ -239,27 +239,27 @@ std::vector<std::byte> WriteValues(
   const CellBrickHeader& header = brick.GetHeader();
   std::vector<ValueRange> groups(header.Groups, ValueRange::GetEmpty());
   ValueRange all = ValueRange::GetEmpty();
-  for (std::uint32_t group = 0; group < header.Groups; ++group)
+  CellGroup group;
+  for (std::uint32_t number = 0; number < header.Groups; ++number)
   {
-    std::uint16_t corners[CellBrick::GroupSize][CellBrick::MostCorners];
-    const int count = brick.ReadGroup(group, corners);
-    for (int cell = 0; cell < count; ++cell)
+    brick.ReadGroup(number, group);
+    for (int cell = 0; cell < group.Cells; ++cell)
     {
       ValueRange range = ValueRange::GetEmpty();
       bool isWhole = true;
-      for (int corner = 0; corner < header.Corners; ++corner)
+      for (int corner = 0; corner < group.Corners; ++corner)
       {
-        const float value = points.Values[corners[cell][corner]];
+        const float value = points.Values[group.Numbers[group.At[cell][corner]]];
         isWhole = isWhole && !std::isnan(value);
         range.Add({ value, value });
       }
       if (isWhole)
       {
-        groups[group].Add(range);
+        groups[number].Add(range);
         survey.CountRange(range.First, range.Last, false);
       }
     }
-    all.Add(groups[group]);
+    all.Add(groups[number]);
   }
 
   CellValueHeader values{};

@@ -46,17 +46,21 @@ class CellSizes
 public:
   void Add(const CellBrick& brick)
   {
-    const CellBrickHeader& header = brick.GetHeader();
-    for (std::uint32_t group = 0; group < header.Groups; ++group)
+    CellGroup group;
+    for (std::uint32_t number = 0; number < brick.GetHeader().Groups; ++number)
     {
-      std::uint16_t corners[CellBrick::GroupSize][CellBrick::MostCorners];
-      const int count = brick.ReadGroup(group, corners);
-      for (int cell = 0; cell < count; ++cell)
+      brick.ReadGroup(number, group);
+      float places[CellGroup::MostPoints][4] = {};
+      for (int point = 0; point < group.Points; ++point)
+      {
+        brick.GetPoint(group.Numbers[point], places[point]);
+      }
+      for (int cell = 0; cell < group.Cells; ++cell)
       {
         BoundingBox box;
-        for (int corner = 0; corner < header.Corners; ++corner)
+        for (int corner = 0; corner < group.Corners; ++corner)
         {
-          box.Add(Float4::Load(brick.GetPoint(corners[cell][corner])));
+          box.Add(Float4::Load(places[group.At[cell][corner]]));
         }
         float size[4];
         (box.Upper - box.Lower).Store(size);

@@ -8,11 +8,11 @@
 #include "DSMBricks/cells/CellBrick.h"
 #include "DSMRayTracing/field/tetrahedra/CellKernel.h"
 #include "DSMRayTracing/field/tetrahedra/CellPacket.h"
-#include "DSMRayTracing/field/tetrahedra/SplitCells.h"
 #include "DSMRayTracing/ray/RayMask.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace rt
@@ -96,6 +96,13 @@ inline void ForEachBrick(const CellKernel& kernel, const CellPacket& packet,
     { visit(bricks::RangedBrickBvh::GetBrick(leaf), lanes, enter); });
 }
 
+/// Returns whether all corners of a cell have values, by places among the points of its group.
+inline bool HasValues(const float* values, const std::uint8_t* corners, int count)
+{
+  return std::none_of(
+    corners, corners + count, [values](std::uint8_t corner) { return std::isnan(values[corner]); });
+}
+
 /// Finds the tetrahedra of a brick that the rays of a packet cross.
 template <class Filter>
 class BrickCrossings
@@ -105,7 +112,8 @@ public:
 
   /// `filter` selects values:
   /// - `FindChildren(ranges)`: bit i set when child i may have such, by the node's ranges (CellValueBrick);
-  /// - `MayHold(first, last)`: whether values between these may be such.
+  /// - `MayHold(first, last)`: whether values between these may be such;
+  /// - `HoldsAny`: whether all values are such.
   /// All is kept by reference.
   BrickCrossings(const CellKernel& kernel, const CellPacket& packet, const bricks::CellBrick& brick,
     const bricks::CellValueBrick& values, const Filter& filter)
@@ -133,82 +141,113 @@ public:
       },
       [&](std::uint16_t leaf, RayMask met, float)
       {
-        std::uint16_t corners[bricks::CellBrick::GroupSize][bricks::CellBrick::MostCorners];
-        const int cells = this->Brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), corners);
-        for (int cell = 0; cell < cells; ++cell)
-        {
-          this->VisitCell(corners[cell], met, visit);
-        }
+        bricks::CellGroup cells;
+        this->Brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), cells);
+        this->VisitGroup(cells, met, visit);
       });
   }
 
 private:
   template <class Visit>
-  void VisitCell(const std::uint16_t* corners, RayMask lanes, const Visit& visit) const
+  void VisitGroup(const bricks::CellGroup& cells, RayMask lanes, const Visit& visit) const
   {
-    CellKernel::Cell cell;
-    if (!this->Read(corners, cell))
+    CellKernel::Group group;
+    if (!this->Read(cells, group))
     {
       return;
     }
-    Crossing crossings[CellKernel::MostCrossings];
-    const int count = this->Kernel.FindCrossings(this->Packet, lanes, cell, crossings);
+    CellKernel::Crossing crossings[CellKernel::MostCrossings];
+    const int count = this->Kernel.FindCrossings(this->Packet, lanes, group, crossings);
     for (int number = 0; number < count; ++number)
     {
       const Crossing& crossing = crossings[number];
-      const std::uint8_t* const at = cell.Tetrahedra[crossing.Part];
-      const std::uint16_t points[4] = { corners[at[0]], corners[at[1]], corners[at[2]],
-        corners[at[3]] };
+      const std::uint8_t* const at = group.Tetrahedra[crossing.Part];
+      const std::uint16_t points[4] = { cells.Numbers[at[0]], cells.Numbers[at[1]],
+        cells.Numbers[at[2]], cells.Numbers[at[3]] };
       visit(crossing, points);
     }
   }
 
-  /// False where the cell has nothing that is looked for.
-  bool Read(const std::uint16_t* corners, CellKernel::Cell& cell) const
+  /// False where the cells have nothing that is looked for.
+  bool Read(const bricks::CellGroup& cells, CellKernel::Group& group) const
   {
-    cell.Corners = this->Brick.GetHeader().Corners;
-    float least = this->Numbers[corners[0]];
-    float most = least;
-    for (int corner = 0; corner < cell.Corners; ++corner)
+    float values[bricks::CellGroup::MostPoints];
+    bool isWhole = true;
+    for (int point = 0; point < cells.Points; ++point)
     {
-      const float value = this->Numbers[corners[corner]];
-      cell.Values[corner] = value;
-      least = std::min(value, least);
-      most = std::max(value, most);
+      values[point] = this->Numbers[cells.Numbers[point]];
+      isWhole = isWhole && !std::isnan(values[point]);
     }
-    if (!this->Wanted.MayHold(least, most) || !HasValues(this->Numbers, corners, cell.Corners))
+    group.Corners = cells.Corners;
+    int parts = 0;
+    for (int cell = 0; cell < cells.Cells; ++cell)
+    {
+      const std::uint8_t* const corners = cells.At[cell];
+      if (!this->MayHold(values, corners, cells.Corners) ||
+        !(isWhole || HasValues(values, corners, cells.Corners)))
+      {
+        continue;
+      }
+      CellKernel::Group::Cell& read = group.Cells[group.CellCount];
+      read.FirstPart = static_cast<std::uint8_t>(parts);
+      this->ReadParts(cells, cell, values, group, parts);
+      read.Parts = static_cast<std::uint8_t>(parts - read.FirstPart);
+      std::copy_n(corners, bricks::CellGroup::MostCorners, read.At);
+      group.CellCount += static_cast<int>(read.Parts > 0);
+    }
+    if (group.CellCount == 0)
     {
       return false;
     }
-    for (int corner = 0; corner < cell.Corners; ++corner)
+    group.PointCount = cells.Points;
+    const bricks::PackedPlaces places = this->Brick.GetPlaces();
+    for (int number = 0; number < cells.Points; ++number)
     {
-      const float* const point = this->Brick.GetPoint(corners[corner]);
-      for (int place = 0; place < 3; ++place)
+      float place[3];
+      places.Get(cells.Numbers[number], place);
+      CellKernel::Group::Point& point = group.Points[number];
+      for (int axis = 0; axis < 3; ++axis)
       {
-        cell.Points[place][corner] = point[this->Packet.Axes[place]];
+        point.Place[axis] = place[this->Packet.Axes[axis]];
       }
+      point.Value = values[number];
     }
-    std::uint8_t all[bricks::MostTetrahedra][4];
-    const int parts = SplitCell(this->Brick, corners, all);
-    cell.Parts = 0;
-    for (int part = 0; part < parts; ++part)
-    {
-      if (this->MayHold(cell.Values, all[part]))
-      {
-        std::copy_n(all[part], 4, cell.Tetrahedra[cell.Parts++]);
-      }
-    }
-    return cell.Parts > 0;
+    return true;
   }
 
-  bool MayHold(const float* values, const std::uint8_t* corners) const
+  /// Adds those of a cell's tetrahedra that may have what is looked for, and are not flat.
+  void ReadParts(const bricks::CellGroup& cells, int cell, const float* values,
+    CellKernel::Group& group, int& parts) const
   {
-    const float a = values[corners[0]];
-    const float b = values[corners[1]];
-    const float c = values[corners[2]];
-    const float d = values[corners[3]];
-    return this->Wanted.MayHold(
-      std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)));
+    const std::uint8_t* const corners = cells.At[cell];
+    const auto* const split = cells.GetParts(cell);
+    for (int part = 0; part < cells.CountParts(); ++part)
+    {
+      std::uint8_t* const at = group.Tetrahedra[parts];
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        at[corner] = corners[split[part][corner]];
+      }
+      const bool isFlat = at[0] == at[1] || at[0] == at[2] || at[0] == at[3] || at[1] == at[2] ||
+        at[1] == at[3] || at[2] == at[3];
+      parts += static_cast<int>(!isFlat && this->MayHold(values, at, 4));
+    }
+  }
+
+  bool MayHold(const float* values, const std::uint8_t* corners, int count) const
+  {
+    if constexpr (Filter::HoldsAny)
+    {
+      return true;
+    }
+    float least = values[corners[0]];
+    float most = least;
+    for (int corner = 1; corner < count; ++corner)
+    {
+      least = std::min(values[corners[corner]], least);
+      most = std::max(values[corners[corner]], most);
+    }
+    return this->Wanted.MayHold(least, most);
   }
 
   const CellKernel& Kernel;
@@ -224,6 +263,8 @@ template <class Predicate>
 class PredicateFilter
 {
 public:
+  static constexpr bool HoldsAny = false;
+
   PredicateFilter(const bricks::CellValueHeader& header, const Predicate& mayHold)
     : First(header.First)
     , Step(header.Step)
@@ -261,6 +302,8 @@ private:
 class AnyFilter
 {
 public:
+  static constexpr bool HoldsAny = true;
+
   static unsigned FindChildren(const std::uint8_t* ranges)
   {
     unsigned found = 0;

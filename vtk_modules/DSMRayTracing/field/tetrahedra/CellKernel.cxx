@@ -119,51 +119,10 @@ private:
     return open & lanes;
   }
 
-  static int FindCrossings(const CellPacket& packet, RayMask lanes, const CellKernel::Cell& cell,
+  static int FindCrossings(const CellPacket& packet, RayMask lanes, const CellKernel::Group& group,
     CellKernel::Crossing* crossings)
   {
-    const RayMask near = FindNear(packet, lanes, cell);
-    return near == 0 ? 0 : Crossings(packet, cell).Find(near, crossings);
-  }
-
-  /// Those of `lanes` that may pass between the corners of a cell, as they see them.
-  static RayMask FindNear(const CellPacket& packet, RayMask lanes, const CellKernel::Cell& cell)
-  {
-    const F tag;
-    const Vector infinity = hn::Set(tag, std::numeric_limits<float>::infinity());
-    RayMask near = 0;
-    for (int first = 0; first < packet.Count; first += Width)
-    {
-      if (GetPart(lanes, first, Width) == 0)
-      {
-        continue;
-      }
-      Vector start[3];
-      for (int place = 0; place < 3; ++place)
-      {
-        start[place] = hn::Load(tag, packet.Start[packet.Axes[place]] + first);
-      }
-      const Vector shear[2] = { hn::Load(tag, packet.FilterShear[0] + first),
-        hn::Load(tag, packet.FilterShear[1] + first) };
-      Vector least[2] = { infinity, infinity };
-      Vector most[2] = { hn::Neg(infinity), hn::Neg(infinity) };
-      for (int corner = 0; corner < cell.Corners; ++corner)
-      {
-        const Vector depth = hn::Sub(hn::Set(tag, cell.Points[2][corner]), start[2]);
-        for (int axis = 0; axis < 2; ++axis)
-        {
-          const Vector seen = hn::Sub(hn::Sub(hn::Set(tag, cell.Points[axis][corner]), start[axis]),
-            hn::Mul(shear[axis], depth));
-          least[axis] = hn::Min(least[axis], seen);
-          most[axis] = hn::Max(most[axis], seen);
-        }
-      }
-      const Vector margin = hn::Load(tag, packet.Uncertainty + first);
-      const Mask isNear = hn::And(hn::Le(hn::Max(least[0], least[1]), margin),
-        hn::Ge(hn::Min(most[0], most[1]), hn::Neg(margin)));
-      near |= GetBits(isNear) << first;
-    }
-    return near & lanes;
+    return Crossings(packet, group).Find(lanes, crossings);
   }
 
   static RayMask Integrate(const CellPacket& packet, const CellKernel::Runs& runs,

@@ -38,16 +38,32 @@ struct CellKernel
     float Enter[bricks::WideBvhWidth];
   };
 
-  /// A cell that is split into tetrahedra.
-  struct Cell
+  /// Cells that are split into tetrahedra, and their points, each once.
+  struct Group
   {
-    static constexpr int MostCorners = bricks::CellBrick::MostCorners;
+    static constexpr int MostCells = bricks::CellGroup::MostCells;
+    static constexpr int MostCorners = bricks::CellGroup::MostCorners;
+    static constexpr int MostPoints = bricks::CellGroup::MostPoints;
+    static constexpr int MostParts = MostCells * bricks::MostTetrahedra;
 
-    int Corners;
-    float Points[3][MostCorners]; ///< along the axes of the packet
-    float Values[MostCorners];
-    int Parts;
-    std::uint8_t Tetrahedra[bricks::MostTetrahedra][4]; ///< numbers of corners
+    struct Point
+    {
+      float Place[3]; ///< along the axes of the packet
+      float Value;
+    };
+    struct Cell
+    {
+      std::uint8_t At[MostCorners]; ///< numbers of points
+      std::uint8_t FirstPart;       ///< of its tetrahedra
+      std::uint8_t Parts;
+    };
+
+    int PointCount = 0;
+    Point Points[MostPoints];
+    int Corners; ///< of each cell
+    int CellCount = 0;
+    Cell Cells[MostCells];
+    std::uint8_t Tetrahedra[MostParts][4]; ///< numbers of points
   };
   /// Where a ray enters and leaves a tetrahedron (T), and the values there.
   struct Crossing
@@ -57,7 +73,7 @@ struct CellKernel
     double First;
     double Last;
     std::uint8_t Lane;
-    std::uint8_t Part; ///< the tetrahedron
+    std::uint8_t Part; ///< the tetrahedron's number
   };
   /// The way of a ray through a tetrahedron, between its Min and Max: as Crossing.
   struct Part
@@ -73,7 +89,7 @@ struct CellKernel
     const Part* First[CellPacket::Size];
     int Count[CellPacket::Size];
   };
-  static constexpr int MostCrossings = bricks::MostTetrahedra * CellPacket::Size;
+  static constexpr int MostCrossings = Group::MostParts * CellPacket::Size;
 
   const char* Name;
   int Width; ///< rays at once
@@ -86,10 +102,10 @@ struct CellKernel
   /// Returns those of `lanes` that end behind a place, in units of BoxRay.
   RayMask (*FindOpen)(const CellPacket& packet, RayMask lanes, float enter);
 
-  /// Writes how those of `lanes` cross the tetrahedra of a cell between their Min and Max. Returns the number of
+  /// Writes how those of `lanes` cross the tetrahedra of a group between their Min and Max. Returns the number of
   /// crossings, at most MostCrossings.
   int (*FindCrossings)(
-    const CellPacket& packet, RayMask lanes, const Cell& cell, Crossing* crossings);
+    const CellPacket& packet, RayMask lanes, const Group& group, Crossing* crossings);
 
   /// Takes rays of a medium through parts, and adds what comes of it. Returns the lanes that are dark then.
   RayMask (*Integrate)(const CellPacket& packet, const Runs& runs, const TransferFunction& function,

@@ -12,8 +12,8 @@
 namespace rt
 {
 
-/// Rays of a batch through a CellField that move most along the same axis, in the same direction: ShearedRay, one array
-/// for each number. A lane has the numbers of one ray. The result of a ray does not depend on the others.
+/// Rays of a batch through a CellField that move most along the same axis, in the same direction: ShearedRay. A lane
+/// has the numbers of one ray. The result of a ray does not depend on the others.
 struct CellPacket
 {
   static constexpr int Size = MaxRays;
@@ -21,12 +21,16 @@ struct CellPacket
   int Count = 0;
   int Rays[Size]; ///< numbers of the rays in their batch
 
-  // TriangleRay:
+  /// TriangleRay.
+  struct alignas(64) LaneRay
+  {
+    double Origin[3]; ///< along Axes
+    double Min;
+    double Shear[3];
+    double Max;
+  };
   int Axes[3];
-  alignas(64) double Origin[3][Size] = {}; ///< along Axes
-  alignas(64) double Shear[3][Size] = {};
-  alignas(64) double Min[Size] = {};
-  alignas(64) double Max[Size] = {};
+  LaneRay Lanes[Size] = {};
 
   // BoxRay:
   alignas(64) float Start[3][Size] = {};
@@ -51,16 +55,16 @@ struct CellPacket
     for (int axis = 0; axis < 3; ++axis)
     {
       this->Axes[axis] = ray.Triangles.Axes[axis];
-      this->Origin[axis][lane] = ray.Triangles.Origin[axis];
-      this->Shear[axis][lane] = ray.Triangles.Shear[axis];
+      this->Lanes[lane].Origin[axis] = ray.Triangles.Origin[axis];
+      this->Lanes[lane].Shear[axis] = ray.Triangles.Shear[axis];
       this->Start[axis][lane] = ray.Boxes.Origin[axis];
       this->Inverse[axis][lane] = ray.Boxes.Inverse[axis];
       this->Margin[axis][lane] = ray.Boxes.Margin[axis];
     }
+    this->Lanes[lane].Min = ray.Triangles.Min;
+    this->Lanes[lane].Max = ray.Triangles.Max;
     this->FilterShear[0][lane] = static_cast<float>(ray.Triangles.Shear[0]);
     this->FilterShear[1][lane] = static_cast<float>(ray.Triangles.Shear[1]);
-    this->Min[lane] = ray.Triangles.Min;
-    this->Max[lane] = ray.Triangles.Max;
     this->BoxesEnd[lane] = ray.BoxesEnd;
     this->Uncertainty[lane] = ray.Uncertainty;
     this->StartT[lane] = ray.StartT;
@@ -70,7 +74,7 @@ struct CellPacket
   /// Ends the ray of a lane at `t`: boxes behind it need not be visited.
   void Shorten(int lane, double t)
   {
-    this->Max[lane] = t;
+    this->Lanes[lane].Max = t;
     this->BoxesEnd[lane] =
       ShearedRay::GetBoxesT(t, this->StartT[lane], this->BoxesPerT[lane], this->Uncertainty[lane]);
   }

@@ -4,7 +4,6 @@
 
 #include "DSMBricks/cells/CellBrick.h"
 #include "DSMRayTracing/field/tetrahedra/CellField.h"
-#include "DSMRayTracing/field/tetrahedra/SplitCells.h"
 #include "DSMRayTracing/field/tetrahedra/TetrahedronShape.h"
 #include "DSMRayTracing/field/walk/PlainSampler.h"
 #include "DSMRayTracing/ray/RayMask.h"
@@ -137,27 +136,36 @@ private:
     ForEachContaining(brick.GetNodes(), place.Point,
       [&](std::uint16_t leaf)
       {
-        std::uint16_t corners[bricks::CellBrick::GroupSize][bricks::CellBrick::MostCorners];
-        const int cells = brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), corners);
-        for (int cell = 0; cell < cells; ++cell)
+        bricks::CellGroup cells;
+        brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), cells);
+        for (int cell = 0; cell < cells.Cells; ++cell)
         {
-          if (HasValues(numbers.GetValues(), corners[cell], brick.GetHeader().Corners))
+          if (HasValues(numbers.GetValues(), cells, cell))
           {
-            this->FindInCell(brick, corners[cell], number, place, best, found);
+            FindInCell(brick, cells, cell, number, place, best, found);
           }
         }
       });
   }
 
-  static void FindInCell(const bricks::CellBrick& brick, const std::uint16_t* cell,
+  static bool HasValues(const float* values, const bricks::CellGroup& cells, int cell)
+  {
+    const std::uint8_t* const corners = cells.At[cell];
+    return std::none_of(corners, corners + cells.Corners,
+      [&](std::uint8_t corner) { return std::isnan(values[cells.Numbers[corner]]); });
+  }
+
+  static void FindInCell(const bricks::CellBrick& brick, const bricks::CellGroup& cells, int cell,
     std::uint32_t number, const CellPlace& place, double& best, CellPlace& found)
   {
-    std::uint8_t tetrahedra[bricks::MostTetrahedra][4];
-    const int parts = SplitCell(brick, cell, tetrahedra);
-    for (int part = 0; part < parts; ++part)
+    const std::uint8_t* const corners = cells.At[cell];
+    const auto* const parts = cells.GetParts(cell);
+    for (int part = 0; part < cells.CountParts(); ++part)
     {
-      const std::uint8_t* const at = tetrahedra[part];
-      const std::uint16_t points[4] = { cell[at[0]], cell[at[1]], cell[at[2]], cell[at[3]] };
+      const std::uint8_t* const at = parts[part];
+      const std::uint16_t points[4] = { cells.Numbers[corners[at[0]]],
+        cells.Numbers[corners[at[1]]], cells.Numbers[corners[at[2]]],
+        cells.Numbers[corners[at[3]]] };
       double weights[4];
       const bool isSolid = TetrahedronShape(brick, points).GetWeights(place.Point, weights);
       const double least = std::min({ weights[0], weights[1], weights[2], weights[3] });

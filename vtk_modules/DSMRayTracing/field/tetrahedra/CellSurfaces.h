@@ -34,6 +34,8 @@ namespace rt
 class IsovalueFilter
 {
 public:
+  static constexpr bool HoldsAny = false;
+
   IsovalueFilter(const bricks::CellValueHeader& header, const std::vector<double>& isovalues)
     : Isovalues(isovalues.data())
     , Count(isovalues.size())
@@ -249,7 +251,8 @@ private:
         double place[3] = {};
         for (int corner = 0; corner < 4; ++corner)
         {
-          const float* const point = root.Cells.GetPoint(root.Corners[corner]);
+          float point[3];
+          root.Cells.GetPoint(root.Corners[corner], point);
           for (int axis = 0; axis < 3; ++axis)
           {
             place[axis] += static_cast<double>(point[axis]);
@@ -303,7 +306,7 @@ private:
           VisitRoots(sets.Isovalues, crossing,
             [&](double t, std::size_t isovalue, bool fromInside)
             {
-              if (t >= packet.Min[lane] && t <= packet.Max[lane] && packet.IsOpen(lane))
+              if (t >= packet.Lanes[lane].Min && t <= packet.Lanes[lane].Max && packet.IsOpen(lane))
               {
                 visit(packet, Root{ lane, t, isovalue, fromInside, brick, corners, cells });
               }

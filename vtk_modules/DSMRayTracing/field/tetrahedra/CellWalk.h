@@ -151,7 +151,8 @@ private:
           [&](const CellKernel::Crossing& crossing, const std::uint16_t*)
           {
             const int lane = crossing.Lane;
-            this->Waiting[lane].Insert(GetPart(crossing, packet.Min[lane], packet.Max[lane]));
+            this->Waiting[lane].Insert(
+              GetPart(crossing, packet.Lanes[lane].Min, packet.Lanes[lane].Max));
           });
     };
     const bricks::CellValueHeader& header = numbers.GetHeader();

@@ -14,7 +14,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
@@ -27,46 +29,68 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Finds where rays cross the faces of tetrahedra, and the values there. Two tetrahedra that share a face get the same
 /// bits there, in whatever order they name its points: each number comes from operations that do not depend on the
 /// order, or of which only the sign does. As for triangles (TriangleIntersector.h), a ray does not pass between
-/// tetrahedra that share a face, an edge or a corner. D: vectors of doubles, a ray in each lane.
+/// tetrahedra that share a face, an edge or a corner. D: vectors of
+/// doubles, a ray and a tetrahedron in each lane.
 template <class D>
 class TetrahedronCrossings
 {
 public:
   /// Keeps references.
-  TetrahedronCrossings(const CellPacket& packet, const CellKernel::Cell& cell)
+  TetrahedronCrossings(const CellPacket& packet, const CellKernel::Group& group)
     : Packet(packet)
-    , Cell(cell)
+    , Group(group)
   {
   }
 
-  /// See CellKernel::FindCrossings. `lanes` is not empty.
+  /// See CellKernel::FindCrossings.
   int Find(RayMask lanes, CellKernel::Crossing* crossings)
   {
     this->Next = crossings;
-    while (lanes != 0)
+    SeenPoints seen[CellPacket::Size / FilterWidth];
+    for (int chunk = 0; chunk * FilterWidth < this->Packet.Count; ++chunk)
     {
-      int count = 0;
-      for (; lanes != 0 && count < Width; lanes &= lanes - 1)
+      if (GetPart(lanes, chunk * FilterWidth, FilterWidth) != 0)
       {
-        this->Lanes[count++] = GetLowest(lanes);
+        this->LookAt(chunk * FilterWidth, seen[chunk]);
       }
-      // The others do what the first one does, and are not looked at.
-      for (int lane = count; lane < Width; ++lane)
-      {
-        this->Lanes[lane] = this->Lanes[0];
-      }
-      this->FindTogether((std::uint32_t{ 1 } << count) - 1);
     }
+    for (int index = 0; index < this->Group.CellCount; ++index)
+    {
+      const CellKernel::Group::Cell& cell = this->Group.Cells[index];
+      RayMask near = this->FindNear(seen, lanes, cell.At, this->Group.Corners);
+      // Many rays look at the tetrahedra of one cell; few wait for others, until vectors are full.
+      while (hwy::PopCount(near) > Width / 2)
+      {
+        near = this->FindInCell(cell, near);
+      }
+      for (int part = cell.FirstPart; near != 0 && part < cell.FirstPart + cell.Parts; ++part)
+      {
+        const RayMask wait = this->Group.Corners == 4
+          ? near
+          : this->FindNear(seen, near, this->Group.Tetrahedra[part], 4);
+        ForEachRay(wait,
+          [&](int lane)
+          {
+            this->Waiting.Add(lane, part);
+            if (this->Waiting.Count == Width)
+            {
+              this->FindWaiting();
+            }
+          });
+      }
+    }
+    this->FindWaiting();
     return static_cast<int>(this->Next - crossings);
   }
 
 private:
   using Vector = hn::Vec<D>;
   using Mask = hn::Mask<D>;
-  using NumberTag = hn::RebindToSigned<D>;
+  using Filter = hn::CappedTag<float, 2 * hn::MaxLanes(D())>;
   static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
+  static constexpr int FilterWidth = static_cast<int>(hn::MaxLanes(Filter()));
 
-  /// A point of a cell as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T
+  /// A point of a group as a ray sees it, after Woop et al. 2013: the ray goes along the third axis, in units of its T
   /// times Shear[2].
   struct SeenPoint
   {
@@ -92,71 +116,195 @@ private:
   static HWY_INLINE Vector Max(Vector a, Vector b) { return hn::Max(b, a); }
   ///@}
 
-  HWY_INLINE Vector Load(const double* numbers) const
-  {
-    return hn::GatherIndex(D(), numbers, hn::Load(NumberTag(), this->Lanes));
-  }
+  /// Where all points are before the rays of some lanes.
+  using SeenPoints = hn::Vec<Filter>[CellKernel::Group::MostPoints][2];
 
-  /// `there`: bits of those of Lanes that count.
-  HWY_INLINE void FindTogether(std::uint32_t there)
+  HWY_INLINE void LookAt(int first, SeenPoints& seen) const
   {
-    const D tag;
+    const Filter tag;
     const CellPacket& packet = this->Packet;
-    const Vector origin[3] = { this->Load(packet.Origin[0]), this->Load(packet.Origin[1]),
-      this->Load(packet.Origin[2]) };
-    const Vector shear[2] = { this->Load(packet.Shear[0]), this->Load(packet.Shear[1]) };
-    SeenPoint seen[CellKernel::Cell::MostCorners];
-    const auto number = [&](float value) { return hn::Set(tag, static_cast<double>(value)); };
-    for (int corner = 0; corner < this->Cell.Corners; ++corner)
+    hn::Vec<Filter> start[3];
+    for (int place = 0; place < 3; ++place)
     {
-      SeenPoint& point = seen[corner];
-      point.Depth = hn::Sub(number(this->Cell.Points[2][corner]), origin[2]);
-      point.X = hn::Sub(
-        hn::Sub(number(this->Cell.Points[0][corner]), origin[0]), hn::Mul(shear[0], point.Depth));
-      point.Y = hn::Sub(
-        hn::Sub(number(this->Cell.Points[1][corner]), origin[1]), hn::Mul(shear[1], point.Depth));
-      point.Value = number(this->Cell.Values[corner]);
+      start[place] = hn::Load(tag, packet.Start[packet.Axes[place]] + first);
     }
-    there &= this->FindAround(seen);
-    if (there == 0)
+    const hn::Vec<Filter> shear[2] = { hn::Load(tag, packet.FilterShear[0] + first),
+      hn::Load(tag, packet.FilterShear[1] + first) };
+    for (int point = 0; point < this->Group.PointCount; ++point)
     {
-      return;
-    }
-    const Vector scale = this->Load(packet.Shear[2]);
-    const Vector min = this->Load(packet.Min);
-    const Vector max = this->Load(packet.Max);
-    const Mask rays = GetBitMask(tag, there);
-    for (int part = 0; part < this->Cell.Parts; ++part)
-    {
-      const std::uint8_t* const at = this->Cell.Tetrahedra[part];
-      Found found;
-      FindFaces(scale, seen[at[0]], seen[at[1]], seen[at[2]], seen[at[3]], rays, found);
-      const Mask within = hn::And(hn::Ge(found.Exit, min), hn::Le(found.Enter, max));
-      const std::uint32_t crossing = GetMaskBits(tag, hn::And(found.Twice, within));
-      if (crossing != 0)
+      const float* const place = this->Group.Points[point].Place;
+      const auto depth = hn::Sub(hn::Set(tag, place[2]), start[2]);
+      for (int axis = 0; axis < 2; ++axis)
       {
-        this->Write(found, crossing, part);
+        seen[point][axis] =
+          hn::Sub(hn::Sub(hn::Set(tag, place[axis]), start[axis]), hn::Mul(shear[axis], depth));
       }
     }
   }
 
-  /// Lanes of which not all corners are on one side.
-  HWY_INLINE std::uint32_t FindAround(const SeenPoint* seen) const
+  /// Returns which of `lanes` may pass between some points, as they see them.
+  HWY_INLINE RayMask FindNear(
+    const SeenPoints* seen, RayMask lanes, const std::uint8_t* at, int corners) const
+  {
+    const Filter tag;
+    RayMask near = 0;
+    for (int first = 0; first < this->Packet.Count; first += FilterWidth)
+    {
+      if (GetPart(lanes, first, FilterWidth) == 0)
+      {
+        continue;
+      }
+      const SeenPoints& points = seen[first / FilterWidth];
+      hn::Vec<Filter> least[2] = { points[at[0]][0], points[at[0]][1] };
+      hn::Vec<Filter> most[2] = { least[0], least[1] };
+      for (int corner = 1; corner < corners; ++corner)
+      {
+        for (int axis = 0; axis < 2; ++axis)
+        {
+          least[axis] = hn::Min(least[axis], points[at[corner]][axis]);
+          most[axis] = hn::Max(most[axis], points[at[corner]][axis]);
+        }
+      }
+      const auto margin = hn::Load(tag, this->Packet.Uncertainty + first);
+      const auto isNear = hn::And(hn::Le(hn::Max(least[0], least[1]), margin),
+        hn::Ge(hn::Min(most[0], most[1]), hn::Neg(margin)));
+      near |= RayMask{ GetMaskBits(tag, isNear) } << first;
+    }
+    return near & lanes;
+  }
+
+  /// Rays and tetrahedra that are looked at together.
+  struct Pairs
+  {
+    int Count = 0;
+    int Lanes[Width] = {};
+    int Parts[Width] = {};
+
+    void Add(int lane, int part)
+    {
+      this->Lanes[this->Count] = lane;
+      this->Parts[this->Count] = part;
+      ++this->Count;
+    }
+    /// Lets the others do what the first one does. Returns the bits of those that count.
+    std::uint32_t Fill()
+    {
+      std::fill(this->Lanes + this->Count, this->Lanes + Width, this->Lanes[0]);
+      std::fill(this->Parts + this->Count, this->Parts + Width, this->Parts[0]);
+      return (std::uint32_t{ 1 } << this->Count) - 1;
+    }
+  };
+  struct Rays
+  {
+    Vector Origin[3];
+    Vector Shear[3];
+    Vector Min;
+    Vector Max;
+  };
+
+  HWY_INLINE void LoadRays(const Pairs& pairs, Rays& rays) const
   {
     const D tag;
-    const Vector infinity = hn::Set(tag, std::numeric_limits<double>::infinity());
-    Vector least[2] = { infinity, infinity };
-    Vector most[2] = { hn::Neg(infinity), hn::Neg(infinity) };
-    for (int corner = 0; corner < this->Cell.Corners; ++corner)
+    HWY_ALIGN double numbers[2][4 * Width];
+    for (int lane = 0; lane < Width; ++lane)
     {
-      least[0] = hn::Min(least[0], seen[corner].X);
-      least[1] = hn::Min(least[1], seen[corner].Y);
-      most[0] = hn::Max(most[0], seen[corner].X);
-      most[1] = hn::Max(most[1], seen[corner].Y);
+      const CellPacket::LaneRay& ray = this->Packet.Lanes[pairs.Lanes[lane]];
+      std::memcpy(numbers[0] + 4 * lane, ray.Origin, 4 * sizeof(double));
+      std::memcpy(numbers[1] + 4 * lane, ray.Shear, 4 * sizeof(double));
     }
-    const Vector zero = hn::Zero(tag);
-    return GetMaskBits(tag,
-      hn::And(hn::Le(hn::Max(least[0], least[1]), zero), hn::Ge(hn::Min(most[0], most[1]), zero)));
+    hn::LoadInterleaved4(tag, numbers[0], rays.Origin[0], rays.Origin[1], rays.Origin[2], rays.Min);
+    hn::LoadInterleaved4(tag, numbers[1], rays.Shear[0], rays.Shear[1], rays.Shear[2], rays.Max);
+  }
+
+  static HWY_INLINE SeenPoint See(const Rays& rays, Vector x, Vector y, Vector z, Vector value)
+  {
+    SeenPoint point;
+    point.Depth = hn::Sub(z, rays.Origin[2]);
+    point.X = hn::Sub(hn::Sub(x, rays.Origin[0]), hn::Mul(rays.Shear[0], point.Depth));
+    point.Y = hn::Sub(hn::Sub(y, rays.Origin[1]), hn::Mul(rays.Shear[1], point.Depth));
+    point.Value = value;
+    return point;
+  }
+
+  /// Looks at the tetrahedra of a cell by as many of `lanes` as a vector has. Returns the others.
+  HWY_INLINE RayMask FindInCell(const CellKernel::Group::Cell& cell, RayMask lanes)
+  {
+    Pairs pairs;
+    for (; lanes != 0 && pairs.Count < Width; lanes &= lanes - 1)
+    {
+      pairs.Add(GetLowest(lanes), cell.FirstPart);
+    }
+    const std::uint32_t there = pairs.Fill();
+    Rays rays;
+    this->LoadRays(pairs, rays);
+    const auto number = [](float value) { return hn::Set(D(), static_cast<double>(value)); };
+    SeenPoint seen[CellKernel::Group::MostCorners];
+    std::uint8_t corners[CellKernel::Group::MostPoints];
+    for (int corner = 0; corner < this->Group.Corners; ++corner)
+    {
+      const CellKernel::Group::Point& point = this->Group.Points[cell.At[corner]];
+      seen[corner] = See(rays, number(point.Place[0]), number(point.Place[1]),
+        number(point.Place[2]), number(point.Value));
+      corners[cell.At[corner]] = static_cast<std::uint8_t>(corner);
+    }
+    for (int part = cell.FirstPart; part < cell.FirstPart + cell.Parts; ++part)
+    {
+      const std::uint8_t* const at = this->Group.Tetrahedra[part];
+      std::fill_n(pairs.Parts, Width, part);
+      this->FindPart(rays, seen[corners[at[0]]], seen[corners[at[1]]], seen[corners[at[2]]],
+        seen[corners[at[3]]], there, pairs);
+    }
+    return lanes;
+  }
+
+  /// Looks at the rays and tetrahedra that wait.
+  HWY_NOINLINE void FindWaiting()
+  {
+    if (this->Waiting.Count == 0)
+    {
+      return;
+    }
+    const D tag;
+    using Floats = hn::Rebind<float, D>;
+    const std::uint32_t there = this->Waiting.Fill();
+    HWY_ALIGN float corners[4][4 * Width];
+    for (int pair = 0; pair < Width; ++pair)
+    {
+      const std::uint8_t* const at = this->Group.Tetrahedra[this->Waiting.Parts[pair]];
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        std::memcpy(corners[corner] + 4 * pair, &this->Group.Points[at[corner]],
+          sizeof(CellKernel::Group::Point));
+      }
+    }
+    Rays rays;
+    this->LoadRays(this->Waiting, rays);
+    SeenPoint seen[4];
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      hn::Vec<Floats> numbers[4];
+      hn::LoadInterleaved4(
+        Floats(), corners[corner], numbers[0], numbers[1], numbers[2], numbers[3]);
+      seen[corner] = See(rays, hn::PromoteTo(tag, numbers[0]), hn::PromoteTo(tag, numbers[1]),
+        hn::PromoteTo(tag, numbers[2]), hn::PromoteTo(tag, numbers[3]));
+    }
+    this->FindPart(rays, seen[0], seen[1], seen[2], seen[3], there, this->Waiting);
+    this->Waiting.Count = 0;
+  }
+
+  /// `there`: bits of those that count.
+  HWY_INLINE void FindPart(const Rays& rays, const SeenPoint& a, const SeenPoint& b,
+    const SeenPoint& c, const SeenPoint& d, std::uint32_t there, const Pairs& pairs)
+  {
+    const D tag;
+    Found found;
+    FindFaces(rays.Shear[2], a, b, c, d, GetBitMask(tag, there), found);
+    const Mask within = hn::And(hn::Ge(found.Exit, rays.Min), hn::Le(found.Enter, rays.Max));
+    const std::uint32_t crossing = GetMaskBits(tag, hn::And(found.Twice, within));
+    if (crossing != 0)
+    {
+      this->Write(found, crossing, pairs);
+    }
   }
 
   /// Finds no face of any but `rays`.
@@ -229,7 +377,7 @@ private:
     found.Once = hn::Or(found.Once, meets);
   }
 
-  HWY_INLINE void Write(const Found& found, std::uint32_t crossing, int part)
+  HWY_INLINE void Write(const Found& found, std::uint32_t crossing, const Pairs& pairs)
   {
     const D tag;
     HWY_ALIGN double numbers[4][Width];
@@ -239,16 +387,17 @@ private:
     hn::Store(found.Last, tag, numbers[3]);
     for (; crossing != 0; crossing &= crossing - 1)
     {
-      const int lane = __builtin_ctz(crossing);
-      *this->Next++ = { numbers[0][lane], numbers[1][lane], numbers[2][lane], numbers[3][lane],
-        static_cast<std::uint8_t>(this->Lanes[lane]), static_cast<std::uint8_t>(part) };
+      const int pair = __builtin_ctz(crossing);
+      *this->Next++ = { numbers[0][pair], numbers[1][pair], numbers[2][pair], numbers[3][pair],
+        static_cast<std::uint8_t>(pairs.Lanes[pair]),
+        static_cast<std::uint8_t>(pairs.Parts[pair]) };
     }
   }
 
   const CellPacket& Packet;
-  const CellKernel::Cell& Cell;
+  const CellKernel::Group& Group;
   CellKernel::Crossing* Next = nullptr;
-  HWY_ALIGN std::int64_t Lanes[Width]; ///< those of the packet that are looked at
+  Pairs Waiting; ///< fewer than Width
 };
 
 } // namespace HWY_NAMESPACE

@@ -25,7 +25,8 @@ public:
   {
     for (int corner = 0; corner < 4; ++corner)
     {
-      const float* const point = brick.GetPoint(corners[corner]);
+      float point[3];
+      brick.GetPoint(corners[corner], point);
       this->Corners[corner] = { point[0], point[1], point[2] };
     }
   }
