@@ -97,8 +97,9 @@ public:
     CellKernel::Group group;
     const bool whole = this->Random() % 2 == 0;
     const int flat = static_cast<int>(this->Random() % 8); // an axis, or none
-    group.PointCount = 8 + this->GetCount(20);
-    for (int number = 0; number < group.PointCount; ++number)
+    const int count = 8 + this->GetCount(20);
+    group.Used = (std::uint64_t(1) << count) - 1;
+    for (int number = 0; number < count; ++number)
     {
       CellKernel::Group::Point& point = group.Points[number];
       for (int axis = 0; axis < 3; ++axis)
@@ -120,7 +121,7 @@ public:
       CellKernel::Group::Cell& cell = group.Cells[index];
       std::array<std::uint8_t, CellKernel::Group::MostPoints> points;
       std::iota(points.begin(), points.end(), std::uint8_t{ 0 });
-      std::shuffle(points.begin(), points.begin() + group.PointCount, this->Random);
+      std::shuffle(points.begin(), points.begin() + count, this->Random);
       std::copy_n(points.begin(), CellKernel::Group::MostCorners, cell.At);
       cell.FirstPart = static_cast<std::uint8_t>(parts);
       cell.Parts = group.Corners == 4 ? 1 : bricks::MostTetrahedra;

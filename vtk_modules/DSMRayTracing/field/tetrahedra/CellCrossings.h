@@ -192,17 +192,22 @@ private:
       read.FirstPart = static_cast<std::uint8_t>(parts);
       this->ReadParts(cells, cell, values, group, parts);
       read.Parts = static_cast<std::uint8_t>(parts - read.FirstPart);
-      std::copy_n(corners, bricks::CellGroup::MostCorners, read.At);
-      group.CellCount += static_cast<int>(read.Parts > 0);
+      if (read.Parts > 0)
+      {
+        std::copy_n(corners, bricks::CellGroup::MostCorners, read.At);
+        std::for_each(corners, corners + cells.Corners,
+          [&](std::uint8_t corner) { group.Used |= std::uint64_t(1) << corner; });
+        ++group.CellCount;
+      }
     }
     if (group.CellCount == 0)
     {
       return false;
     }
-    group.PointCount = cells.Points;
     const bricks::PackedPlaces places = this->Brick.GetPlaces();
-    for (int number = 0; number < cells.Points; ++number)
+    for (std::uint64_t used = group.Used; used != 0; used &= used - 1)
     {
+      const int number = __builtin_ctzll(used);
       float place[3];
       places.Get(cells.Numbers[number], place);
       CellKernel::Group::Point& point = group.Points[number];

@@ -58,7 +58,7 @@ struct CellKernel
       std::uint8_t Parts;
     };
 
-    int PointCount = 0;
+    std::uint64_t Used = 0; ///< bits of the points that cells have; no others are known
     Point Points[MostPoints];
     int Corners; ///< of each cell
     int CellCount = 0;

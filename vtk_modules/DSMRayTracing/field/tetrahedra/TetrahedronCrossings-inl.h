@@ -130,8 +130,9 @@ private:
     }
     const hn::Vec<Filter> shear[2] = { hn::Load(tag, packet.FilterShear[0] + first),
       hn::Load(tag, packet.FilterShear[1] + first) };
-    for (int point = 0; point < this->Group.PointCount; ++point)
+    for (std::uint64_t used = this->Group.Used; used != 0; used &= used - 1)
     {
+      const int point = __builtin_ctzll(used);
       const float* const place = this->Group.Points[point].Place;
       const auto depth = hn::Sub(hn::Set(tag, place[2]), start[2]);
       for (int axis = 0; axis < 2; ++axis)
