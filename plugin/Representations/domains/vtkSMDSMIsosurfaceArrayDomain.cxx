@@ -3,6 +3,7 @@
 
 #include "vtkSMDSMImageRepresentationProxy.h"
 
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVArrayInformation.h"
@@ -47,6 +48,13 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefaultValues(
   return isSet;
 }
 
+bool vtkSMDSMIsosurfaceArrayDomain::IsFilteredArray(
+  vtkPVDataInformation* data, int association, const char* arrayName)
+{
+  return association == vtkDataObject::FIELD ||
+    this->Superclass::IsFilteredArray(data, association, arrayName);
+}
+
 int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useUncheckedValues)
 {
   const int isSet = this->Superclass::SetDefaultValues(property, useUncheckedValues);
@@ -57,10 +65,22 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
   {
     return isSet;
   }
-  const auto isGhosts = [this](unsigned int number)
-  { return std::string(this->GetString(number)) == vtkDataSetAttributes::GhostArrayName(); };
+  const auto isFlagOrId = [this, data](unsigned int number)
+  {
+    const std::string name = this->GetString(number);
+    vtkPVDataSetAttributesInformation* const attributes =
+      data->GetAttributeInformation(this->GetFieldAssociation(number));
+    const auto is = [&](int kind)
+    {
+      vtkPVArrayInformation* const array =
+        attributes ? attributes->GetAttributeInformation(kind) : nullptr;
+      return array && array->GetName() && name == array->GetName();
+    };
+    return name == vtkDataSetAttributes::GhostArrayName() || is(vtkDataSetAttributes::GLOBALIDS) ||
+      is(vtkDataSetAttributes::PEDIGREEIDS);
+  };
   unsigned int first = 0;
-  while (first < this->GetNumberOfStrings() && isGhosts(first))
+  while (first < this->GetNumberOfStrings() && isFlagOrId(first))
   {
     ++first;
   }
@@ -85,7 +105,7 @@ int vtkSMDSMIsosurfaceArrayDomain::SetDefault(vtkSMProperty* property, bool useU
   {
     vtkPVArrayInformation* const array =
       data->GetArrayInformation(this->GetString(number), association);
-    if (array && array->GetNumberOfComponents() == 1 && !isGhosts(number))
+    if (array && array->GetNumberOfComponents() == 1 && !isFlagOrId(number))
     {
       chosen.Set(Association, association);
       chosen.Set(Association + 1, this->GetString(number));

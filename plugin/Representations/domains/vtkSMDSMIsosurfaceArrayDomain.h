@@ -4,8 +4,9 @@
  * @brief   the arrays that have isosurfaces, of which the default is the data's scalars, or the first of one component
  *
  * ParaView's ArrayListDomain takes the first of all by name where the data have no active scalars, such as a velocity
- * before a pressure; its magnitude has isosurfaces, too, but is seldom what is wanted. The name is what ParaView makes
- * of the element DSMIsosurfaceArrayDomain.
+ * before a pressure; its magnitude has isosurfaces, too, but is seldom what is wanted. Ghost flags and ids, such as an
+ * Exodus file's GlobalNodeId, are never the default while there is another array. The name is what ParaView makes of
+ * the element DSMIsosurfaceArrayDomain.
  */
 
 #ifndef vtkSMDSMIsosurfaceArrayDomain_h
@@ -25,6 +26,9 @@ public:
 protected:
   vtkSMDSMIsosurfaceArrayDomain();
   ~vtkSMDSMIsosurfaceArrayDomain() override;
+
+  /// Arrays of neither points nor cells, such as an OpenFOAM case's path, are left out.
+  bool IsFilteredArray(vtkPVDataInformation* data, int association, const char* arrayName) override;
 
 private:
   int SetDefault(vtkSMProperty* property, bool useUncheckedValues);
