@@ -228,6 +228,10 @@ bool vtkPVDSMTracedDisplay::Process(
     request == vtkPVView::REQUEST_UPDATE() && this->Representation->GetNeedsUpdate();
   this->IsUpdated = false;
   this->ExportProp->Forget();
+  if (request == vtkPVView::REQUEST_UPDATE() && this->Scene)
+  {
+    this->Scene->ForgetFrameBounds(); // the view finds those of the displays when all are updated
+  }
   // Not what a Surface does: it delivers its geometry, or a coarser one.
   if (!this->Representation->vtkPVDataRepresentation::ProcessViewRequest(request, inInfo, outInfo))
   {

@@ -172,6 +172,11 @@ void vtkDSMScene::EndFrame()
   this->EndReading();
 }
 
+void vtkDSMScene::ForgetFrameBounds()
+{
+  this->Self->Prop->UseBoundsOff();
+}
+
 /// Publications of the frame have taken the bricks that were read ahead for it; the rest is
 /// useless.
 void vtkDSMScene::EndReading()

@@ -157,6 +157,13 @@ public:
    */
   void SetHidden(bool hidden);
 
+  /**
+   * Leaves the last frame out of the renderer's bounds until the next frame. A camera that is reset before shows what
+   * is visible now, and not what was. For applications that gather the bounds of all ranks' objects, as ParaView does
+   * in each update. Local, between frames.
+   */
+  void ForgetFrameBounds();
+
   ///@{
   /**
    * Number of samples of each pixel that one render adds to the picture while camera, data and look do not change,
