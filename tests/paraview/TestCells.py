@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Structured and unstructured grids: isosurfaces beside Contour's, volumes and slices; the same on any number of ranks,
-as ParaView divides its sources."""
+as ParaView divides its sources. Also those of files: of several blocks, with ids, with polyhedra."""
 
+import grid_files
 from dsm_testing import *
 
 load_plugin()
@@ -127,3 +128,42 @@ for source in (wavelet, moved):
     show(source, view, [150.0], "RTData")
 show_traced(sphere, view)
 check_equal(render(view), together, "Blocks: as apart")
+simple.Hide(wavelet, view)
+simple.Hide(moved, view)
+simple.Hide(sphere, view)
+
+# Files of simulations, as ParaView's readers give them. One rank writes them.
+exodus = os.path.join(OUTPUT, "cells.e")
+if get_ranks() == 1:
+    simple.SaveData(exodus, hexahedra)
+foam = grid_files.write_open_foam(os.path.join(OUTPUT, "foam"))
+ensight = grid_files.write_ensight(os.path.join(OUTPUT, "ensight"))
+files = {
+    # Its ids of points come before its values.
+    "Exodus": (simple.ExodusIIReader(FileName=[exodus]), "POINTS", "RTData", 150.0),
+    "EnSight": (simple.EnSightReader(CaseFileName=ensight), "POINTS", "f", 3.3),
+    "OpenFOAM": (simple.OpenFOAMReader(FileName=foam), "POINTS", "T", 3.3),
+    "Decomposed": (simple.OpenFOAMReader(FileName=foam, CaseType="Decomposed Case", Decomposepolyhedra=0),
+                   "CELLS", "T", 3.3),
+}
+view.ViewTime = 1.0
+for name, (source, association, array, isovalue) in files.items():
+    source.UpdatePipeline(1.0)
+    display = show_traced(source, view)
+    for representation in (REPRESENTATION, "DSM Volume", "DSM Slices"):
+        check(representation in display.GetProperty("Representation").Available, f"{name}: {representation} is offered")
+    place_camera(view)  # after a picture of other bounds
+    display.DSMShow = "Isosurfaces"
+    check(display.DSMIsoArray[1] == array, f"{name}: {list(display.DSMIsoArray)} is chosen")
+    low, high = source.GetDataInformation().GetArrayInformation(array, 0).GetComponentRange(0)
+    check(low < display.DSMIsoValue < high, f"{name}: isovalue {display.DSMIsoValue} is chosen")
+    picture = show_without_messages(display, name, DSMIsoArray=[association, array], DSMIsoValues=[isovalue])
+    simple.Hide(source, view)
+    if get_ranks() == 1:
+        points = simple.MergeBlocks(Input=source)
+        if association == "CELLS":
+            points = simple.CellDatatoPointData(Input=points)
+        contour = simple.Contour(Input=points, ContourBy=["POINTS", array], Isosurfaces=[isovalue], ComputeScalars=0)
+        show_surface(contour, view)
+        check_same_surface(picture, render(view), name)
+        simple.Delete(contour)
