@@ -167,3 +167,28 @@ for name, (source, association, array, isovalue) in files.items():
         show_surface(contour, view)
         check_same_surface(picture, render(view), name)
         simple.Delete(contour)
+
+# A closed isosurface through cells of unlike kinds, of pieces on all ranks, has no gap: no background is seen from
+# within, and a lamp within lights nothing of a room around it.
+source = files["EnSight"][0]
+display = show(source, view, [3.3], "f")
+simple.ResetCamera(view)
+center = [4.3, 3.8, 4.1]
+view.CameraPosition, view.CameraViewAngle = center, 100.0
+directions = [[1.0, 0.2, 0.1], [-0.6, 1.0, 0.3], [0.1, -0.4, -1.0], [-1.0, -1.0, 0.5]]
+for direction in directions:
+    view.CameraFocalPoint = [place + step for place, step in zip(center, direction)]
+    check((render(view) != [0, 0, 51]).any(axis=2).all(), f"no background is seen towards {direction}")
+room = simple.Sphere(Center=center, Radius=20, ThetaResolution=32, PhiResolution=32)
+show_traced(room, view)
+lamp = simple.CreateLight()
+lamp.Coords, lamp.Type, lamp.ConeAngle = "Scene", "Positional", 180.0
+lamp.Position, lamp.FocalPoint = center, [5.0, 4.0, 4.0]
+view.AdditionalLights, view.UseLight = [lamp], 0
+for direction in directions:
+    view.CameraPosition = [place + 12.0 * step for place, step in zip(center, direction)]
+    view.CameraFocalPoint = center
+    display.DSMShadows = 0
+    check(get_covered(render(view)).any(), "the lamp lights the room")
+    display.DSMShadows = 1
+    check(render(view).max() == 0, f"the lamp is hidden from {direction}")

@@ -37,7 +37,7 @@ def write_ensight(folder):
     cells = {"hexa8": [], "penta6": [], "pyramid5": [], "tetra4": []}
     for k, j, i in numpy.ndindex(SIZE, SIZE, SIZE):
         at = get_corners(i, j, k)
-        if k == SIZE // 2:
+        if i == SIZE // 2:  # along z from end to end: no triangle is beside a face of four corners
             cells["penta6"] += [[at[corner] for corner in wedge] for wedge in ((0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7))]
         elif (i + j + k) % 2:
             cells["hexa8"].append(at)

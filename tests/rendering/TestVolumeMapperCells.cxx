@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Curvilinear and unstructured grids: cells of every shape.
-#include "VolumeMapperTest.h"
+#include "VolumeMapperCellsTest.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCallbackCommand.h"
@@ -10,17 +10,14 @@
 #include "vtkCellDataToPointData.h"
 #include "vtkCellType.h"
 #include "vtkColorTransferFunction.h"
-#include "vtkContourFilter.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
-#include "vtkMath.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStructuredGrid.h"
-#include "vtkTestErrorObserver.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVolumeProperty.h"
 
@@ -249,100 +246,6 @@ vtkSmartPointer<vtkStructuredGrid> MakeStructured()
   return grid;
 }
 
-/// Longitudes to 360 degrees, poles that are points, and more layers at the ground. The height is the value.
-vtkSmartPointer<vtkStructuredGrid> MakeGlobe(int fineness)
-{
-  const ivec3 size(36 * fineness + 1, 18 * fineness + 1, 9);
-  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
-  grid->SetDimensions(size.x, size.y, size.z);
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkDoubleArray> values;
-  values->SetName("distance");
-  for (int k = 0; k < size.z; ++k)
-  {
-    for (int j = 0; j < size.y; ++j)
-    {
-      for (int i = 0; i < size.x; ++i)
-      {
-        const double longitude = 2.0 * vtkMath::Pi() * (i % (size.x - 1)) / (size.x - 1);
-        const double latitude = vtkMath::Pi() * (double(j) / (size.y - 1) - 0.5);
-        const double wide = j == 0 || j == size.y - 1 ? 0.0 : std::cos(latitude);
-        const double radius = 8.0 + 6.0 * std::pow(double(k) / (size.z - 1), 1.5);
-        points->InsertNextPoint(radius * wide * std::cos(longitude),
-          radius * wide * std::sin(longitude), radius * std::sin(latitude));
-        values->InsertNextValue(radius / Edge);
-      }
-    }
-  }
-  grid->SetPoints(points);
-  grid->GetPointData()->SetScalars(values);
-  return grid;
-}
-
-class VolumeMapperCells : public VolumeMapper
-{
-protected:
-  VolumeMapperCells() { this->Mapper->AddObserver(vtkCommand::ErrorEvent, this->Errors); }
-
-  std::vector<double> Render(vtkDataObject* data)
-  {
-    this->Mapper->SetInputDataObject(data);
-    std::vector<double> distances = this->RenderTraced();
-    EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
-    this->Errors->Clear();
-    return distances;
-  }
-  std::vector<double> RenderContour(vtkDataObject* data)
-  {
-    vtkNew<vtkContourFilter> contour;
-    contour->SetInputData(data);
-    contour->SetInputArrayToProcess(0, 0, 0, vtkDataObject::POINT, "distance");
-    contour->SetValue(0, this->Mapper->GetIsoValue(0));
-    contour->ComputeNormalsOff();
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputConnection(contour->GetOutputPort());
-    mapper->ScalarVisibilityOff();
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    this->Renderer->AddActor(actor);
-    std::vector<double> distances = this->RenderDistances();
-    this->Renderer->RemoveActor(actor);
-    return distances;
-  }
-  /// Pixels covered, and distances in those that both cover.
-  static void ExpectSame(const std::vector<double>& traced, const std::vector<double>& expected,
-    double share = 0.005, double apart = 0.05)
-  {
-    int differing = 0;
-    double sum = 0.0;
-    int both = 0;
-    for (std::size_t pixel = 0; pixel < traced.size(); ++pixel)
-    {
-      const bool isThere = std::isfinite(traced[pixel]);
-      differing += isThere == std::isfinite(expected[pixel]) ? 0 : 1;
-      if (isThere && std::isfinite(expected[pixel]))
-      {
-        ++both;
-        sum += std::abs(traced[pixel] - expected[pixel]);
-      }
-    }
-    EXPECT_GT(both, 1000);
-    EXPECT_LE(differing, share * both);
-    EXPECT_LE(sum, apart * both);
-  }
-  /// Expects an error that has a text.
-  void ExpectError(vtkDataObject* data, const char* text)
-  {
-    this->Mapper->SetInputDataObject(data);
-    EXPECT_EQ(CountCovered(this->RenderTraced()), 0);
-    EXPECT_NE(this->Errors->GetErrorMessage().find(text), std::string::npos)
-      << this->Errors->GetErrorMessage();
-    this->Errors->Clear();
-  }
-
-  vtkNew<vtkTest::ErrorObserver> Errors;
-};
-
 } // namespace
 
 TEST_F(VolumeMapperCells, LinearCellsOfEveryShapeCoverWhatContourDoes)
@@ -432,27 +335,6 @@ TEST_F(VolumeMapperCells, StructuredGridsAreAsTheirHexahedra)
   const auto hexahedra = MakeCells(
     [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3&) { AddHexahedron(grid, at); });
   EXPECT_EQ(this->Render(hexahedra), traced);
-}
-
-TEST_F(VolumeMapperCells, AGlobeIsClosed)
-{
-  this->Mapper->SetIsoValue(0, 12.0 / Edge);
-  const auto coarse = MakeGlobe(1);
-  ExpectSame(this->Render(coarse), this->RenderContour(coarse));
-  const auto globe = MakeGlobe(5);
-  const std::vector<double> traced = this->Render(globe);
-  ExpectSame(traced, this->RenderContour(globe));
-  // No pixel is missing within its outline.
-  for (int row = 0; row < Size; ++row)
-  {
-    int changes = 0;
-    for (int column = 1; column < Size; ++column)
-    {
-      const auto pixel = static_cast<std::size_t>(row * Size + column);
-      changes += std::isfinite(traced[pixel]) == std::isfinite(traced[pixel - 1]) ? 0 : 1;
-    }
-    EXPECT_LE(changes, 2) << "row " << row;
-  }
 }
 
 TEST_F(VolumeMapperCells, CellsThatAreHidden)
