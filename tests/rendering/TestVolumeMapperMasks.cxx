@@ -2,20 +2,24 @@
 // Cells that the values of another array hide, beside blanked ones.
 #include "VolumeMapperTest.h"
 
+#include "vtkAppendFilter.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkPlane.h"
 #include "vtkPointDataToCellData.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 #include "vtkVolumeProperty.h"
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -99,9 +103,13 @@ protected:
 
   /// An isosurface, a medium and slices, each by point and by cell values, and a medium with an opacity array show what
   /// blanked cells leave.
-  void ExpectSameAsBlanked(vtkImageData* blanked)
+  void ExpectSameAsBlanked(vtkDataSet* blanked)
   {
-    for (int kind = 0; kind < 7; ++kind)
+    this->ExpectSameAsBlanked(this->Image, blanked, { 0, 1, 2, 3, 4, 5, 6 });
+  }
+  void ExpectSameAsBlanked(vtkDataSet* data, vtkDataSet* blanked, const std::vector<int>& kinds)
+  {
+    for (const int kind : kinds)
     {
       SCOPED_TRACE(kind);
       this->Mapper->SetNumberOfIsoValues(0);
@@ -112,10 +120,10 @@ protected:
         this->Mapper->SetIsoValue(0, 0.4);
       }
       this->Mapper->SetIsoArrayOnCells(kind >= 3 && kind < 6);
-      const auto masked = this->DrawPixels(this->Image);
+      const auto masked = this->DrawPixels(data);
       const std::string mask = this->Mapper->GetMaskArray();
       this->Mapper->SetMaskArray("");
-      const auto whole = this->DrawPixels(this->Image);
+      const auto whole = this->DrawPixels(data);
       EXPECT_EQ(GetDifference(this->DrawPixels(blanked), masked), 0.0);
       EXPECT_GT(GetDifference(whole, masked), 0.5);
       EXPECT_GT(masked->GetRange(0)[1], 100.0);
@@ -147,6 +155,36 @@ TEST_F(VolumeMapperOfMasks, HideTheCellsOfOtherValues)
   // Values that do not exist leave nothing.
   this->Mapper->SetMaskRange(7.0, 8.0);
   EXPECT_EQ(this->DrawPixels(this->Image)->GetRange(0)[1], 0.0);
+}
+
+TEST_F(VolumeMapperOfMasks, HideCellsOfUnstructuredGrids)
+{
+  vtkNew<vtkAppendFilter> toCells;
+  toCells->SetInputData(this->Image);
+  toCells->Update();
+  vtkUnstructuredGrid* const cells = toCells->GetOutput();
+  vtkNew<vtkPlane> plane;
+  plane->SetNormal(0.3, 0.2, 1.0);
+  vtkNew<vtkPlaneCollection> planes;
+  planes->AddItem(plane);
+  this->Mapper->SetSlicePlanes(planes);
+  this->Mapper->SetMaskArray("labels");
+  for (const bool onCells : { false, true })
+  {
+    SCOPED_TRACE(onCells);
+    const auto ofImage =
+      this->MakeBlanked(onCells, [](double label) { return label == 0.0 || label == 3.0; });
+    vtkNew<vtkUnstructuredGrid> blanked;
+    blanked->ShallowCopy(cells);
+    blanked->GetCellData()->AddArray(
+      ofImage->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    this->Mapper->SetMaskArrayOnCells(onCells);
+    this->Mapper->AddMaskValue(3.0);
+    this->Mapper->AddMaskValue(0.0);
+    this->ExpectSameAsBlanked(
+      cells, blanked, onCells ? std::vector<int>{ 2, 3 } : std::vector<int>{ 0, 6 });
+    this->Mapper->RemoveAllMaskValues();
+  }
 }
 
 TEST_F(VolumeMapperOfMasks, MakeNewBricksOnlyWhenTheyChange)

@@ -30,12 +30,6 @@ void vtkDSMCellMask::Apply(const bricks::Box& cells, std::uint8_t* out) const
     std::fill_n(out, cells.GetCount(), std::uint8_t{ 0 });
     return;
   }
-  const std::vector<double>& values = this->Shown.Values;
-  const auto isShown = [&](double value)
-  {
-    return values.empty() ? value >= this->Shown.Lowest && value <= this->Shown.Highest
-                          : std::binary_search(values.begin(), values.end(), value);
-  };
   const Index3 more(this->Shown.OnCells ? 0 : 1);
   const bricks::Box samples{ cells.Min, cells.Max + more };
   std::vector<std::byte> bytes(
@@ -49,7 +43,7 @@ void vtkDSMCellMask::Apply(const bricks::Box& cells, std::uint8_t* out) const
       bricks::ForEachIndex(samples,
         [&](const Index3& at)
         {
-          if (isShown(static_cast<double>(*value++)))
+          if (this->Shown.Shows(static_cast<double>(*value++)))
           {
             return;
           }

@@ -9,6 +9,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -36,6 +37,13 @@ public:
     ///@}
     std::vector<double> Values;
 
+    /// Values must be in ascending order.
+    bool Shows(double value) const
+    {
+      return this->Values.empty()
+        ? value >= this->Lowest && value <= this->Highest
+        : std::binary_search(this->Values.begin(), this->Values.end(), value);
+    }
     bool operator==(const CellMask& other) const
     {
       return this->Name == other.Name && this->OnCells == other.OnCells &&

@@ -16,8 +16,8 @@ dsm_setting(MaskArray OWNER voxels TYPE array ARRAYS input_array_values
   LABEL "Mask Array" PANEL advanced WHEN isosurfaces|volume|slices
   TEXT "Array whose values choose the cells that are shown. With a point array, a cell is shown if all of its corners
     have chosen values. With a cell array, if the cell has one."
-  DETAILS "Image data and rectilinear grids can have a mask. The first of several components counts. Hidden cells do
-    not count in the means of cells at points. Empty: no mask.")
+  DETAILS "Image data, rectilinear, structured and unstructured grids can have a mask. The first of several components
+    counts. Hidden cells do not count in the means of cells at points. Empty: no mask.")
 dsm_setting(MaskRange OWNER voxels TYPE range DEFAULT "-1.7976931348623157e308 1.7976931348623157e308"
   LABEL "Mask Range" PANEL advanced WHEN isosurfaces|volume|slices DSMMaskArray.4!=None
   TEXT "Lowest and highest value of the mask array that is shown, while Mask Values is empty.")

@@ -22,6 +22,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/ext/matrix_transform.hpp>
@@ -112,6 +113,49 @@ vtkSmartPointer<vtkDoubleArray> ReadPoints(vtkPointSet* grid, const Reader& read
   return values;
 }
 
+/// A copy of ghost flags, or of none, of which those that the mask does not show have another flag.
+vtkSmartPointer<vtkUnsignedCharArray> HideByMask(vtkDataSetAttributes* attributes, vtkIdType count,
+  vtkDataArray* array, const vtkDSMImageArrays::CellMask& mask, unsigned char flag)
+{
+  const char* const name = vtkDataSetAttributes::GhostArrayName();
+  auto* const old = vtkUnsignedCharArray::SafeDownCast(attributes->GetAbstractArray(name));
+  auto ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(name);
+  ghosts->SetNumberOfTuples(count);
+  for (vtkIdType number = 0; number < count; ++number)
+  {
+    const unsigned char before =
+      old && number < old->GetNumberOfTuples() ? old->GetValue(number) : 0;
+    const bool isShown = array && mask.Shows(array->GetComponent(number, 0));
+    ghosts->SetValue(number, static_cast<unsigned char>(before | (isShown ? 0 : flag)));
+  }
+  return ghosts;
+}
+
+/// Copies of grids in which a mask has hidden cells, or points.
+vtkDSMGridCells::Grids HideByMask(
+  const vtkDSMGridCells::Grids& grids, const vtkDSMPart::Choice& choice)
+{
+  vtkDSMImageArrays::CellMask mask = choice.Mask;
+  std::sort(mask.Values.begin(), mask.Values.end());
+  vtkDSMGridCells::Grids hidden;
+  for (vtkPointSet* const grid : grids)
+  {
+    auto copy = vtkSmartPointer<vtkPointSet>::Take(grid->NewInstance());
+    copy->ShallowCopy(grid);
+    vtkDSMPart::Info info;
+    vtkDataArray* const array = vtkDSMImageArrays::Find(grid, choice.GetMaskArray(), info);
+    vtkDataSetAttributes* const points = copy->GetPointData();
+    vtkDataSetAttributes* const cells = copy->GetCellData();
+    mask.OnCells ? cells->AddArray(HideByMask(cells, grid->GetNumberOfCells(), array, mask,
+                     vtkDataSetAttributes::HIDDENCELL))
+                 : points->AddArray(HideByMask(points, grid->GetNumberOfPoints(), array, mask,
+                     vtkDataSetAttributes::HIDDENPOINT));
+    hidden.push_back(copy);
+  }
+  return hidden;
+}
+
 /// The means of the values of cells at points; NaN where there are none.
 vtkSmartPointer<vtkDoubleArray> AverageOwnCells(vtkPointSet* grid, const Reader& read)
 {
@@ -119,10 +163,13 @@ vtkSmartPointer<vtkDoubleArray> AverageOwnCells(vtkPointSet* grid, const Reader&
   sums->SetNumberOfTuples(grid->GetNumberOfPoints());
   sums->FillValue(0.0);
   std::vector<int> counts(static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
   vtkNew<vtkIdList> points;
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
   {
-    const double value = read(cell);
+    const bool isHidden =
+      ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL) != 0;
+    const double value = isHidden ? std::numeric_limits<double>::quiet_NaN() : read(cell);
     grid->GetCellPoints(cell, points);
     for (vtkIdType corner = 0; std::isfinite(value) && corner < points->GetNumberOfIds(); ++corner)
     {
@@ -304,6 +351,10 @@ void vtkDSMCellPart::AddContent(const Choice& choice, bricks::ByteHash& hash) co
   {
     Info info;
     this->AddArray(vtkDSMImageArrays::Find(grid, choice, info), hash);
+    if (choice.HasMask())
+    {
+      this->AddArray(vtkDSMImageArrays::Find(grid, choice.GetMaskArray(), info), hash);
+    }
   }
 }
 
@@ -356,12 +407,6 @@ void vtkDSMCellPart::RequireCells(
 
 void vtkDSMCellPart::Refuse(const Choice& choice)
 {
-  if (choice.HasMask())
-  {
-    throw dsm::Error("The mask array '" + choice.Mask.Name +
-      "' cannot hide cells of curvilinear or unstructured grids. Set Mask Array to None, or apply "
-      "Threshold first.");
-  }
   if (choice.Component == vtkDSMImagePiece::Color)
   {
     throw dsm::Error("The colors in the array '" + choice.Name +
@@ -464,6 +509,16 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMCellPart::Publish(
   {
     return nullptr;
   }
+  if (request.Array.HasMask())
+  {
+    Request ofShown = request;
+    ofShown.Array.Mask = {};
+    vtkDSMGridCells::Grids grids;
+    this->Group->GetMessenger().RunTogether(
+      "Preparing the " + request.Purpose, [&] { grids = HideByMask(this->Own, request.Array); });
+    const vtkDSMCellPart shown(this->Group, std::move(grids), this->BlockLooks.front().Look);
+    return shown.Publish(ofShown, infos, nullptr);
+  }
   Inputs inputs;
   this->Group->GetMessenger().RunTogether(
     "Preparing the " + request.Purpose, [&] { inputs = this->MakeInputs(request.Array); });
@@ -506,17 +561,18 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMCellPart::Publish(
 vtkDSMPart::OwnGrids vtkDSMCellPart::FindOwnGrids(const Choice& choice) const
 {
   OwnGrids found;
-  const vtkDSMGridCells::Cuts none(this->Own.size());
-  const vtkDSMGridCells source(this->Own, none, this->CountThreads());
-  for (std::size_t own = 0; own < this->Own.size(); ++own)
+  const vtkDSMGridCells::Grids grids = choice.HasMask() ? HideByMask(this->Own, choice) : this->Own;
+  const vtkDSMGridCells::Cuts none(grids.size());
+  const vtkDSMGridCells source(grids, none, this->CountThreads());
+  for (std::size_t own = 0; own < grids.size(); ++own)
   {
     Info info;
-    vtkPointSet* const grid = this->Own[own];
+    vtkPointSet* const grid = grids[own];
     if (vtkDataArray* const array = vtkDSMImageArrays::Find(grid, choice, info))
     {
       const Reader read = MakeReader(array, choice.Component, info.Valid);
       vtkDSMOwnGrid& one = found.emplace_back();
-      one.Data = grid;
+      one.Data = this->Own[own];
       one.Values = choice.OnCells ? AverageOwnCells(grid, read) : ReadPoints(grid, read);
       for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
       {

@@ -51,7 +51,7 @@ private:
   std::uint64_t HashPlaces() const;
   /// Threads of this rank that read and build.
   int CountThreads() const { return this->Group->GetStore().GetSettings().Workers; }
-  /// Throws dsm::Error for an array that cannot be shown on such cells.
+  /// Throws dsm::Error for colors that are no numbers to interpolate.
   static void Refuse(const Choice& choice);
   /// Local. Throws dsm::Error.
   Inputs MakeInputs(const Choice& choice) const;
