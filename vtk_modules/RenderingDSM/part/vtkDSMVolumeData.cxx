@@ -156,6 +156,12 @@ Collected Collect(
       {
         add(data, 0, 0);
       }
+      if (isAnyOther && data->IsA("vtkPolyData"))
+      {
+        throw dsm::Error(
+          "The dataset is a surface (vtkPolyData): it has no isosurfaces, volume or slices. Show "
+          "it as a surface (in ParaView: DSM Ray Traced), or show the grid it was made from.");
+      }
       if (isAnyOther && !tree)
       {
         throw dsm::Error(std::string("A dataset of type ") + data->GetClassName() +
@@ -181,8 +187,9 @@ Collected Collect(
   }
   if (areFlat && !isAny)
   {
-    throw dsm::Error("The cells of the dataset have no volume, so there is nothing to ray trace in "
-                     "them. Apply Extract Surface, and show the surface.");
+    throw dsm::Error(
+      "The cells of the dataset have no volume, so they have no isosurfaces, volume or slices. "
+      "Show them as a surface (in ParaView: DSM Ray Traced).");
   }
   return all;
 }
