@@ -262,6 +262,28 @@ TEST_F(VolumeMapperCells, LinearCellsOfEveryShapeCoverWhatContourDoes)
   }
 }
 
+TEST_F(VolumeMapperCells, RepeatedPointsAndFlatCellsAndCellsInsideOut)
+{
+  const std::vector<double> expected = this->Render(MakeCells(
+    [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3&) { AddWedges(grid, at); }));
+  const auto add = [](vtkUnstructuredGrid* grid, const Corners& at, const ivec3& index)
+  {
+    if ((index.x + index.y + index.z) % 2 == 0)
+    {
+      Add(grid, VTK_HEXAHEDRON, { at[0], at[1], at[3], at[3], at[4], at[5], at[7], at[7] });
+      Add(grid, VTK_HEXAHEDRON, { at[4], at[7], at[6], at[6], at[0], at[3], at[2], at[2] });
+    }
+    else
+    {
+      Add(grid, VTK_WEDGE, { at[4], at[5], at[7], at[0], at[1], at[3] });
+      Add(grid, VTK_WEDGE, { at[0], at[3], at[2], at[4], at[7], at[6] });
+    }
+    Add(grid, VTK_HEXAHEDRON, { at[0], at[1], at[3], at[2], at[0], at[1], at[3], at[2] });
+    Add(grid, VTK_TETRA, { at[5], at[5], at[5], at[5] });
+  };
+  EXPECT_EQ(this->Render(MakeCells(add)), expected);
+}
+
 TEST_F(VolumeMapperCells, PolyhedraAndMixedCells)
 {
   const auto hexahedra = MakeCells(
