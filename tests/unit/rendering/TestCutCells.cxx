@@ -171,7 +171,7 @@ class LinearCells
 {
 public:
   explicit LinearCells(vtkUnstructuredGrid* grid)
-    : Cells({ grid }, vtkDSMGridCells::Cut({ grid }))
+    : Cells({ grid }, vtkDSMGridCells::Cut({ grid }, 1), 1)
   {
   }
 
