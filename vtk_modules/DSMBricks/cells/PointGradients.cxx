@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMBricks/cells/PointGradients.h"
 
-#include "DSMBricks/base/Double2.h"
 #include "DSMBricks/base/Float4.h"
 #include "DSMBricks/cells/CornerOrder.h"
 #include "DSMBricks/cells/ExactScale.h"
@@ -10,6 +9,10 @@
 #include "DSMBricks/cells/SplitCell.h"
 #include "DSMBricks/layout/PlaceInBrick.h"
 #include "DSMCore/memory/BlockArena.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
@@ -181,46 +184,24 @@ private:
 /// From the first corner of a tetrahedron to another one.
 struct CellEdge
 {
-  double Way[6]; ///< x, y, z, x, y, and one that is not used
-  double Rise;   ///< of the value
-
-  Double2 GetXy() const { return Double2::Load(this->Way); }
-  Double2 GetYz() const { return Double2::Load(this->Way + 1); }
-  Double2 GetZx() const { return Double2::Load(this->Way + 2); }
-};
-
-/// A vector product.
-struct EdgeProduct
-{
-  EdgeProduct(const CellEdge& one, const CellEdge& other)
-    : Xy(one.GetYz() * other.GetZx() - one.GetZx() * other.GetYz())
-    , Z(one.Way[0] * other.Way[1] - one.Way[1] * other.Way[0])
-  {
-  }
-  Double2 Xy;
-  double Z;
+  glm::dvec3 Way;
+  double Rise; ///< of the value
 };
 
 /// Writes what a tetrahedron adds to the sums of its corners, from its edges from the first of them.
 inline void MeasureTetrahedron(const CellEdge& a, const CellEdge& b, const CellEdge& c,
   double gradientFactor, double volumeFactor, std::int64_t parts[PartsOfGradient])
 {
-  const EdgeProduct areaOfA(b, c);
-  const EdgeProduct areaOfB(c, a);
-  const EdgeProduct areaOfC(a, b);
-  double products[2];
-  (a.GetXy() * areaOfA.Xy).Store(products);
-  const double volume = products[0] + products[1] + a.Way[2] * areaOfA.Z;
+  const glm::dvec3 areaOfA = glm::cross(b.Way, c.Way);
+  const double volume = glm::dot(a.Way, areaOfA);
   // A flat tetrahedron has no gradient, and others may be inside out.
   const double factor = volume > 0.0 ? gradientFactor : volume < 0.0 ? -gradientFactor : 0.0;
-  const Double2 xy = Double2::Fill(a.Rise) * areaOfA.Xy + Double2::Fill(b.Rise) * areaOfB.Xy +
-    Double2::Fill(c.Rise) * areaOfC.Xy;
-  const double z = a.Rise * areaOfA.Z + b.Rise * areaOfB.Z + c.Rise * areaOfC.Z;
-  double scaled[2];
-  (xy * Double2::Fill(factor)).Store(scaled);
-  parts[0] = static_cast<std::int64_t>(scaled[0]);
-  parts[1] = static_cast<std::int64_t>(scaled[1]);
-  parts[2] = static_cast<std::int64_t>(z * factor);
+  const glm::dvec3 gradient =
+    a.Rise * areaOfA + b.Rise * glm::cross(c.Way, a.Way) + c.Rise * glm::cross(a.Way, b.Way);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    parts[axis] = static_cast<std::int64_t>(gradient[axis] * factor);
+  }
   parts[3] = static_cast<std::int64_t>(std::abs(volume) * volumeFactor);
 }
 
@@ -412,13 +393,8 @@ private:
       for (std::size_t corner = 0; corner < Corners; ++corner)
       {
         CellEdge& edge = edges[corner];
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          edge.Way[axis] = static_cast<double>(cell[corner]->Place[axis]) -
-            static_cast<double>(origin.Place[axis]);
-        }
-        edge.Way[3] = edge.Way[0];
-        edge.Way[4] = edge.Way[1];
+        edge.Way = glm::dvec3(glm::make_vec3(cell[corner]->Place)) -
+          glm::dvec3(glm::make_vec3(origin.Place));
         edge.Rise = cell[corner]->Value - origin.Value;
       }
       const double gradientFactor = scales.OfGradient().GetFactor();
