@@ -16,6 +16,7 @@ import statistics
 import time
 
 import numpy
+from measuring import take_picture, time_isovalues
 from paraview import simple
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -52,22 +53,6 @@ def make_grid(kind, cells):
     array.SetName("distance")
     grid.GetPointData().SetScalars(array)
     return grid
-
-
-def take_picture(view):
-    """Seconds."""
-    start = time.perf_counter()
-    view.SMProxy.CaptureWindow(1)
-    return time.perf_counter() - start
-
-
-def time_isovalues(view, set_isovalue, isovalues):
-    """Seconds of pictures with these isovalues: the median."""
-    seconds = []
-    for isovalue in isovalues:
-        set_isovalue(isovalue)
-        seconds.append(take_picture(view))
-    return statistics.median(seconds)
 
 
 def measure_surface(source, view, options):

@@ -2,7 +2,9 @@
 """What the scripts here share."""
 import json
 import os
+import statistics
 import subprocess
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 BENCH = os.path.join(HERE, "..", "..", "build", "bin", "dsm_bench")
@@ -24,3 +26,21 @@ def get_rows(display):
     """The statistics of each rank (vtkDSMStatistics::GetJson). In pvbatch."""
     display.SMProxy.UpdatePropertyInformation()
     return json.loads(str(display.GetProperty("DSMStatistics")).strip("'"))
+
+
+def take_picture(view):
+    """Seconds to the finished picture in memory. In pvbatch."""
+    start = time.perf_counter()
+    view.SMProxy.CaptureWindow(1)
+    return time.perf_counter() - start
+
+
+def time_isovalues(view, set_isovalue, isovalues):
+    """Seconds from each of these isovalues to its picture: the median. In pvbatch."""
+    seconds = []
+    for isovalue in isovalues:
+        start = time.perf_counter()
+        set_isovalue(isovalue)
+        take_picture(view)
+        seconds.append(time.perf_counter() - start)
+    return statistics.median(seconds)

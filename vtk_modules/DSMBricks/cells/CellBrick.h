@@ -9,6 +9,7 @@
 #include "DSMBricks/cells/SplitCell.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -120,6 +121,15 @@ public:
     return reinterpret_cast<const Node*>(this->Block + CellBrickHeader::NodeOffset);
   }
   void GetPoint(std::uint32_t point, float place[3]) const { this->GetPlaces().Get(point, place); }
+  /// Reads the places of a group's points. Each has room for four floats, of which the last stays as it is.
+  void ReadPlaces(const CellGroup& group, float places[CellGroup::MostPoints][4]) const
+  {
+    const PackedPlaces packed = this->GetPlaces();
+    for (int point = 0; point < group.Points; ++point)
+    {
+      packed.Get(group.Numbers[point], places[point]);
+    }
+  }
   bool IsOfGrid() const { return this->GetHeader().GridCells[0] != 0; }
 
   /// The group that a leaf refers to.
@@ -293,6 +303,13 @@ public:
   const float* GetValues() const
   {
     return reinterpret_cast<const float*>(this->Block + CellValueHeader::ValueOffset);
+  }
+  /// Returns whether all corners of a cell have values.
+  bool HasValues(const CellGroup& group, int cell) const
+  {
+    const float* const values = this->GetValues();
+    return std::none_of(group.At[cell], group.At[cell] + group.Corners,
+      [&](std::uint8_t corner) { return std::isnan(values[group.Numbers[corner]]); });
   }
   /// Null: there are none.
   const PackedGradient* GetGradients() const

@@ -242,10 +242,7 @@ std::uint32_t CellBrickWriter::MeasureGroups(const std::byte* block)
     if (group.Cells > 0)
     {
       float places[CellGroup::MostPoints][4] = {};
-      for (int point = 0; point < group.Points; ++point)
-      {
-        brick.GetPoint(group.Numbers[point], places[point]);
-      }
+      brick.ReadPlaces(group, places);
       BoundingBox box;
       for (int cell = 0; cell < group.Cells; ++cell)
       {

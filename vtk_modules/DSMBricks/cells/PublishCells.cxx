@@ -51,10 +51,7 @@ public:
     {
       brick.ReadGroup(number, group);
       float places[CellGroup::MostPoints][4] = {};
-      for (int point = 0; point < group.Points; ++point)
-      {
-        brick.GetPoint(group.Numbers[point], places[point]);
-      }
+      brick.ReadPlaces(group, places);
       for (int cell = 0; cell < group.Cells; ++cell)
       {
         BoundingBox box;

@@ -96,13 +96,6 @@ inline void ForEachBrick(const CellKernel& kernel, const CellPacket& packet,
     { visit(bricks::RangedBrickBvh::GetBrick(leaf), lanes, enter); });
 }
 
-/// Returns whether all corners of a cell have values, by places among the points of its group.
-inline bool HasValues(const float* values, const std::uint8_t* corners, int count)
-{
-  return std::none_of(
-    corners, corners + count, [values](std::uint8_t corner) { return std::isnan(values[corner]); });
-}
-
 /// Finds the tetrahedra of a brick that the rays of a packet cross.
 template <class Filter>
 class BrickCrossings
@@ -184,7 +177,7 @@ private:
     {
       const std::uint8_t* const corners = cells.At[cell];
       if (!this->MayHold(values, corners, cells.Corners) ||
-        !(isWhole || HasValues(values, corners, cells.Corners)))
+        !(isWhole || this->Values.HasValues(cells, cell)))
       {
         continue;
       }

@@ -140,19 +140,12 @@ private:
         brick.ReadGroup(bricks::CellBrick::GetGroup(leaf), cells);
         for (int cell = 0; cell < cells.Cells; ++cell)
         {
-          if (HasValues(numbers.GetValues(), cells, cell))
+          if (numbers.HasValues(cells, cell))
           {
             FindInCell(brick, cells, cell, number, place, best, found);
           }
         }
       });
-  }
-
-  static bool HasValues(const float* values, const bricks::CellGroup& cells, int cell)
-  {
-    const std::uint8_t* const corners = cells.At[cell];
-    return std::none_of(corners, corners + cells.Corners,
-      [&](std::uint8_t corner) { return std::isnan(values[cells.Numbers[corner]]); });
   }
 
   static void FindInCell(const bricks::CellBrick& brick, const bricks::CellGroup& cells, int cell,

@@ -29,8 +29,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Finds where rays cross the faces of tetrahedra, and the values there. Two tetrahedra that share a face get the same
 /// bits there, in whatever order they name its points: each number comes from operations that do not depend on the
 /// order, or of which only the sign does. As for triangles (TriangleIntersector.h), a ray does not pass between
-/// tetrahedra that share a face, an edge or a corner. D: vectors of
-/// doubles, a ray and a tetrahedron in each lane.
+/// tetrahedra that share a face, an edge or a corner. D: vectors of doubles, a ray and a tetrahedron in each lane.
 template <class D>
 class TetrahedronCrossings
 {
