@@ -22,7 +22,7 @@ class WalkSurfaces;
 /// found to 1e-7 of the way through a cell. A kind whose surfaces are facets, but are shaded as if they were round, has
 /// more: else facets shade one another.
 template <class FieldType>
-constexpr double ClearancePart = 1e-4;
+inline constexpr double ClearancePart = 1e-4;
 
 /// Base of all kinds of fields. A field is values in space that can be walked and sampled: all that is shown of it
 /// comes from its Walk and its Sampler by default (room field/walk). A kind derives from this, brings what follows,

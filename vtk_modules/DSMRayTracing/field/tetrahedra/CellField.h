@@ -38,7 +38,7 @@ struct CellPlace
 
 struct CellField;
 template <>
-constexpr double ClearancePart<CellField> = 0.5;
+inline constexpr double ClearancePart<CellField> = 0.5;
 
 /// Values at the points of cells of any shape, as of curvilinear and unstructured grids. Cells are split into
 /// tetrahedra, alike on both sides of each face (bricks::SplitHexahedron), in which values are linear. A kind of field:
