@@ -143,9 +143,13 @@ files = {
     "Exodus": (simple.ExodusIIReader(FileName=[exodus]), "POINTS", "RTData", 150.0),
     "EnSight": (simple.EnSightReader(CaseFileName=ensight), "POINTS", "f", 3.3),
     "OpenFOAM": (simple.OpenFOAMReader(FileName=foam), "POINTS", "T", 3.3),
-    "Decomposed": (simple.OpenFOAMReader(FileName=foam, CaseType="Decomposed Case", Decomposepolyhedra=0),
-                   "CELLS", "T", 3.3),
+    "Decomposed": (simple.OpenFOAMReader(FileName=foam, CaseType="Decomposed Case"), "CELLS", "T", 3.3),
 }
+for name in ("OpenFOAM", "Decomposed"):
+    files[name][0].Createcelltopointfiltereddata = 1  # off from ParaView 6 on
+decomposed = files["Decomposed"][0]
+if "Decomposepolyhedra" in decomposed.ListProperties():  # before ParaView 6
+    decomposed.Decomposepolyhedra = 0
 view.ViewTime = 1.0
 for name, (source, association, array, isovalue) in files.items():
     source.UpdatePipeline(1.0)
