@@ -45,7 +45,8 @@ TEST(Resolution, DrawsDraftsOfWhatIsNewAndSlow)
   EXPECT_EQ(Costs(0.15).TryAfter(Costs(0.15).Show(1, 1), 2), Edges({ 1, 8 }));
   EXPECT_EQ(Costs(0.35).TryAfter(Costs(0.35).Show(1, 1), 2), Edges({ 2, 8 }));
   EXPECT_EQ(Costs(1.5).TryAfter(Costs(1.5).Show(1, 1), 2), Edges({ 4, 8 }));
-  EXPECT_EQ(Costs(20.0).TryAfter(Costs(20.0).Show(1, 1), 2), Edges({ 8 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 1), 2), Edges({ 8 }));
+  EXPECT_EQ(Costs(20.0).TryAfter(Costs(20.0).Show(1, 1), 2), Edges({ 16 }));
   rt::Resolution::Shown step = Costs(20.0).Show(1, 1);
   step.MayDraft = false;
   EXPECT_EQ(Costs(20.0).TryAfter(step, 2), Edges({ 1 })) << "of an animation";
@@ -60,8 +61,12 @@ TEST(Resolution, RefinesWhatIsShown)
   EXPECT_EQ(Costs(1.0).TryAfter(Costs(1.0).Show(1, 8), 1), Edges({ 1 }));
   EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 8), 1), Edges({ 4 }));
   EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 3), 1), Edges({ 1 }));
-  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 4), 1), Edges({ 2 }));
-  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 2), 1), Edges({ 1 }));
+  EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 4), 1), Edges({ 1 }));
+  rt::Resolution::Shown begun = Costs(5.0).Show(1, 1);
+  begun.Begun = 2;
+  begun.BegunEdge = 8;
+  EXPECT_EQ(Costs(5.0).TryAfter(begun, 2), Edges({ 8 })) << "it goes on with what was aborted";
+  EXPECT_EQ(Costs(5.0).TryAfter(begun, 1), Edges({ 1 }));
   EXPECT_EQ(Costs(5.0).TryAfter(Costs(5.0).Show(1, 1), 1), Edges({ 1 }));
 }
 
@@ -72,7 +77,7 @@ TEST(Resolution, FollowsTheTimeWhileTheCameraMoves)
   EXPECT_EQ(find(0.05, 1), 1);
   EXPECT_EQ(find(0.05, 3), 3);
   EXPECT_EQ(find(0.3, 1), 2);
-  EXPECT_EQ(find(30.0, 1), 8);
+  EXPECT_EQ(find(30.0, 1), 16);
 }
 
 TEST(Resolution, KnowsTheContentAtRestAndInMotion)

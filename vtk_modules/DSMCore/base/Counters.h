@@ -2,6 +2,7 @@
 #ifndef dsm_Counters_h
 #define dsm_Counters_h
 
+#include <algorithm>
 #include <cstdint>
 
 namespace dsm
@@ -59,6 +60,19 @@ struct StoreCounters
   /// Bytes that this rank has put into blocks that it owns while they were published, since the ranks came
   /// together.
   std::uint64_t BytesPublished = 0;
+
+  /// Adds the activity of an earlier part of the frame.
+  void AddActivity(const StoreCounters& earlier)
+  {
+    this->Workers += earlier.Workers;
+    this->Evictions += earlier.Evictions;
+    this->Prefetches += earlier.Prefetches;
+    this->PrefetchesUsed += earlier.PrefetchesUsed;
+    this->Requests += earlier.Requests;
+    this->BytesReceived += earlier.BytesReceived;
+    this->BytesSent += earlier.BytesSent;
+    this->PeakCachedBytes = std::max(this->PeakCachedBytes, earlier.PeakCachedBytes);
+  }
 };
 
 } // namespace dsm

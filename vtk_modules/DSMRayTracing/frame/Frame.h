@@ -56,7 +56,9 @@ struct Frame
   std::vector<Tile> Tiles;
   /// Number of the frame in its group of ranks: the same on every rank. 0: there is no frame.
   std::uint32_t Number = 0;
-  bool IsAborted = false;   ///< on every rank; tiles, or samples of tiles, are missing
+  bool IsAborted = false; ///< on every rank; tiles, or samples of tiles, are missing
+  /// Numbers of the tiles that no rank has, ascending: of a first sample that was aborted. The same on every rank.
+  std::vector<int> Left;
   double BusySeconds = 0.0; ///< from the start to the end of this rank's last tile
   /// Seconds from the collective start to the collective end. If adding samples was aborted and resumed, the
   /// sum over all parts.
@@ -68,7 +70,7 @@ struct Frame
   std::vector<dsm::WorkerCounters> WorkerCounters;
   /// Beams by which the next frame of the view prefetches bricks; null if blocks are not fetched.
   std::shared_ptr<const BeamHistory> Beams;
-  /// Reports of all ranks, in rank order; see FrameRenderer::Records.
+  /// Reports of all ranks, in rank order; see FrameRenderer::Records. An aborted frame has them, too.
   std::vector<std::vector<std::byte>> Reports;
   /// Time in which threads had nothing to trace before this rank's last tile was done, summed over the threads.
   std::uint64_t IdleNanoseconds = 0;

@@ -2,9 +2,9 @@
 #include "DSMRayTracing/frame/FrameAccumulation.h"
 
 #include "DSMRayTracing/frame/SceneDigest.h"
+#include "DSMRayTracing/frame/TileGrid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -15,7 +15,8 @@ FrameAccumulation::Offer FrameAccumulation::CreateOffer(dsm::BlockStore& store, 
   const FrameRequest& request, int wanted, const Pace& pace) const
 {
   return { FrameEntry::Create(store, scene, request, &this->Traced), this->Digest, this->Samples,
-    this->SamplesUnderWay, wanted, pace.Samples, pace.Seconds };
+    this->SamplesUnderWay, this->BegunDigest, this->Begun.Number, wanted, pace.Samples,
+    pace.GoesOn };
 }
 
 /// Returns whether all ranks have samples of the frame that is to be shown, and equally many.
@@ -30,15 +31,25 @@ bool FrameAccumulation::IsSame(const std::vector<Offer>& offers, std::uint64_t d
       });
 }
 
+/// Returns whether all ranks have begun the frame that is to be shown.
+bool FrameAccumulation::IsBegun(const std::vector<Offer>& offers, std::uint64_t digest) const
+{
+  return this->Begun.Number > 0 && digest == this->BegunDigest &&
+    std::all_of(offers.begin(), offers.end(),
+      [&](const Offer& other) {
+        return other.BegunDigest == this->BegunDigest && other.BegunNumber == this->Begun.Number;
+      });
+}
+
 FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
   const std::vector<Offer>& offers, const Scene& scene, FrameRequest request, int wanted,
-  const Pace& pace, double lastSeconds, Report report)
+  const Pace& pace, Report report)
 {
   const auto isUnlike = [&](const Offer& other)
   {
     const Offer& first = offers.front();
     return other.Wanted != first.Wanted || other.PaceSamples != first.PaceSamples ||
-      other.PaceSeconds != first.PaceSeconds;
+      other.GoesOn != first.GoesOn;
   };
   const auto unlike = std::find_if(offers.begin(), offers.end(), isUnlike);
   if (unlike != offers.end())
@@ -51,7 +62,7 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
   ranks.Messenger.Insist(
     [&]
     {
-      digest = wanted > 1 ? GetSceneDigest(scene, request) : 0;
+      digest = GetSceneDigest(scene, request);
       records.Entries.clear();
       for (const Offer& offer : offers)
       {
@@ -59,24 +70,34 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
       }
     });
   FrameEntry::Check(records.Entries, request);
-  if (wanted == 1 || !this->IsSame(offers, digest))
-  {
-    this->Restart();
-  }
-  this->Digest = digest;
-  this->Wanted = wanted;
   // A single sample is traced anew at rest; a last one of several stays.
   const bool isPreview = request.IsPreview && wanted == 1;
+  // Who takes all samples at once wants a single one traced again.
+  const bool isSame =
+    (wanted > 1 || (pace.Samples > 0 && !isPreview)) && this->IsSame(offers, digest);
+  const auto getBegunDigest = [&](bool preview) { return digest + (preview ? 1 : 0); };
+  if (!isSame)
+  {
+    const bool isBegun = this->BegunSamples <= wanted &&
+      this->IsBegun(offers, getBegunDigest(isPreview || this->BegunSamples < wanted));
+    Frame begun = std::move(this->Begun);
+    this->Restart();
+    this->Begun = isBegun ? std::move(begun) : Frame();
+  }
+  this->Wanted = wanted;
+  this->Digest = isPreview ? 0 : digest;
   Result result = Result::Nothing;
   while (this->SamplesUnderWay > 0 || this->Samples < wanted)
   {
     request.FirstSample = this->Samples;
-    request.Samples =
-      this->SamplesUnderWay > 0 ? this->SamplesUnderWay : this->CountNext(pace, lastSeconds);
+    request.Samples = this->SamplesUnderWay > 0 ? this->SamplesUnderWay
+      : this->Begun.Number > 0                  ? this->BegunSamples
+                                                : this->CountNext(pace);
     request.IsPreview = isPreview || request.FirstSample + request.Samples < wanted;
     result = this->TraceOnce(ranks, scene, request, records);
     records.Entries.clear();
-    if (result == Result::Aborted || pace.Samples > 0)
+    this->BegunDigest = this->Begun.Number > 0 ? getBegunDigest(request.IsPreview) : 0;
+    if (result == Result::Aborted || (pace.Samples > 0 && !pace.GoesOn))
     {
       break;
     }
@@ -91,9 +112,19 @@ FrameAccumulation::Result FrameAccumulation::TraceOnce(const Ranks& ranks, const
   this->SamplesUnderWay = 0;
   if (request.FirstSample == 0)
   {
-    Frame frame = ranks.Renderer.Render(ranks.Store, scene, request, &this->Traced, records);
+    Frame frame = std::exchange(this->Begun, {}); // unless it succeeds
+    if (frame.Number > 0)
+    {
+      ranks.Renderer.Resume(ranks.Store, scene, request, frame, &this->Traced, records);
+    }
+    else
+    {
+      frame = ranks.Renderer.Render(ranks.Store, scene, request, &this->Traced, records);
+    }
     if (frame.IsAborted)
     {
+      this->Begun = std::move(frame);
+      this->BegunSamples = request.Samples;
       return Result::Aborted;
     }
     this->Traced = std::move(frame);
@@ -118,6 +149,8 @@ void FrameAccumulation::Restart()
   this->Samples = 0;
   this->SamplesUnderWay = 0;
   this->Wanted = 0;
+  this->Begun = {};
+  this->BegunDigest = 0;
 }
 
 void FrameAccumulation::Postpone()
@@ -127,19 +160,19 @@ void FrameAccumulation::Postpone()
   this->Wanted = wanted;
 }
 
-int FrameAccumulation::CountNext(const Pace& pace, double lastSeconds) const
+int FrameAccumulation::CountNext(const Pace& pace) const
 {
   const int missing = this->Wanted - this->Samples;
-  if (pace.Samples == 0)
-  {
-    return missing;
-  }
-  double samples = pace.Samples;
-  if (this->Samples > 0 && lastSeconds > 0.0)
-  {
-    samples = std::max(samples, std::floor(pace.Seconds * this->LastSamples / lastSeconds));
-  }
-  return static_cast<int>(std::min<double>(samples, missing));
+  const int samples = pace.GoesOn ? std::max(pace.Samples, this->Samples) : pace.Samples;
+  return pace.Samples == 0 ? missing : std::min(samples, missing);
+}
+
+double FrameAccumulation::CountBegunPixels() const
+{
+  const Frame& frame = this->Begun;
+  const double pixels = static_cast<double>(frame.Width) * frame.Height;
+  const double tiles = TileGrid(frame.Width, frame.Height, std::max(frame.TileSize, 1)).GetCount();
+  return tiles > 0.0 ? pixels * (1.0 - static_cast<double>(frame.Left.size()) / tiles) : 0.0;
 }
 
 double FrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
@@ -147,6 +180,14 @@ double FrameAccumulation::GetSecondsPerPixel(double lastSeconds) const
   const double samples =
     static_cast<double>(this->LastSamples) * this->Traced.Width * this->Traced.Height;
   return samples > 0.0 ? lastSeconds / samples : 0.0;
+}
+
+double FrameAccumulation::GetPart() const
+{
+  const double pixels = static_cast<double>(this->Begun.Width) * this->Begun.Height;
+  const double begun =
+    this->Begun.Number > 0 ? this->BegunSamples * this->CountBegunPixels() / pixels : 0.0;
+  return this->IsComplete() ? 1.0 : (this->Samples + begun) / std::max(this->Wanted, 1);
 }
 
 void FrameAccumulation::Clear()

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/FrameGather.h"
 
+#include "DSMRayTracing/frame/TileGrid.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -240,7 +242,13 @@ Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame)
   {
     unpack();
   }
-  const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+  std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
+  const TileGrid grid(frame.Width, frame.Height, std::max(frame.TileSize, 1));
+  for (const int left : frame.Left)
+  {
+    const Tile tile = grid.CreateTile(left);
+    pixels -= static_cast<std::size_t>(tile.Width) * tile.Height;
+  }
   if (filled != pixels)
   {
     throw dsm::Error("The ranks traced " + std::to_string(filled) + " of " +

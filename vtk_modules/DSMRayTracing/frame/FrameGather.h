@@ -23,7 +23,7 @@ struct Picture : Channels
 Picture AssembleTiles(const Frame& frame);
 
 /// Collective: every rank gets the whole picture out of the ranks' tiles. Throws dsm::Error, on
-/// every rank, when tiles are missing or stand twice.
+/// every rank, when tiles are missing (other than Frame::Left) or stand twice.
 Picture GatherFrame(dsm::Messenger& messenger, const Frame& frame);
 
 /// Collective: adds to AssembleTiles the pixels of the other ranks' tiles that their first layer covers in part. Throws

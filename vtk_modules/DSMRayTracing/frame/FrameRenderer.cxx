@@ -25,14 +25,69 @@ double SecondsSince(std::chrono::steady_clock::time_point start)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// What a frame did before it was aborted.
+struct Earlier
+{
+  double Seconds = 0.0;
+  double BusySeconds = 0.0;
+  std::uint64_t IdleNanoseconds = 0;
+  dsm::StoreCounters Counters;
+  std::vector<dsm::WorkerCounters> WorkerCounters;
+};
+
+Earlier GetEarlier(const Frame& frame)
+{
+  return frame.IsAborted ? Earlier{ frame.Seconds, frame.BusySeconds, frame.IdleNanoseconds,
+    frame.Counters, frame.WorkerCounters }
+                         : Earlier();
+}
+
 /// Describes this rank's store and its activity in the frame so far.
-void Describe(dsm::BlockStore& store, Frame& frame)
+void Describe(dsm::BlockStore& store, const Earlier& earlier, Frame& frame)
 {
   frame.Counters = store.GetCounters();
+  frame.Counters.AddActivity(earlier.Counters);
   frame.WorkerCounters = store.GetWorkerCounters();
+  const std::size_t workers = std::min(frame.WorkerCounters.size(), earlier.WorkerCounters.size());
+  for (std::size_t worker = 0; worker < workers; ++worker)
+  {
+    frame.WorkerCounters[worker] += earlier.WorkerCounters[worker];
+  }
   frame.Explanation = store.GetExplanation();
   frame.Organization = store.GetOrganization();
-  frame.IdleNanoseconds = store.GetSlots().GetIdleNanoseconds();
+  frame.IdleNanoseconds = store.GetSlots().GetIdleNanoseconds() + earlier.IdleNanoseconds;
+}
+
+/// Collective. Returns the tiles of the grid that no rank has, ascending.
+std::vector<int> FindLeft(dsm::Messenger& messenger, const TileGrid& grid, const Frame& frame)
+{
+  constexpr int bits = 64;
+  std::vector<std::uint64_t> left;
+  messenger.RunTogether("Ending the frame",
+    [&]
+    {
+      left.assign(static_cast<std::size_t>((grid.GetCount() + bits - 1) / bits), ~std::uint64_t(0));
+      for (const Tile& tile : frame.Tiles)
+      {
+        left[static_cast<std::size_t>(tile.Index / bits)] &=
+          ~(std::uint64_t(1) << tile.Index % bits);
+      }
+    });
+  messenger.Reduce(left, [](std::uint64_t& some, std::uint64_t others) { some &= others; });
+  std::vector<int> tiles;
+  messenger.Insist(
+    [&]
+    {
+      tiles.clear();
+      for (int tile = 0; tile < grid.GetCount(); ++tile)
+      {
+        if ((left[static_cast<std::size_t>(tile / bits)] >> tile % bits & 1) != 0)
+        {
+          tiles.push_back(tile);
+        }
+      }
+    });
+  return tiles;
 }
 
 } // namespace
@@ -49,13 +104,36 @@ FrameRenderer::~FrameRenderer() = default;
 Frame FrameRenderer::Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
   const Frame* last, const Records& records)
 {
+  Frame frame;
+  const TileGrid grid(request.Width, request.Height, request.TileSize);
+  std::vector<int> left;
+  this->Messenger.Insist([&] { left = grid.ListTiles(); });
+  this->RenderLeft(store, scene, request, std::move(left), last, records, frame);
+  return frame;
+}
+
+void FrameRenderer::Resume(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+  Frame& frame, const Frame* last, const Records& records)
+{
+  this->RenderLeft(store, scene, request, std::move(frame.Left), last, records, frame);
+}
+
+void FrameRenderer::RenderLeft(dsm::BlockStore& store, const Scene& scene,
+  const FrameRequest& request, std::vector<int> left, const Frame* last, const Records& records,
+  Frame& frame)
+{
   TileScheduler& scheduler = request.Scheduling == TileScheduling::CentralQueue
     ? static_cast<TileScheduler&>(this->Queue)
     : this->Stealing;
-  NewTiles tiles(TileGrid(request.Width, request.Height, request.TileSize), scheduler);
-  Frame frame;
+  const TileGrid grid(request.Width, request.Height, request.TileSize);
+  NewTiles tiles(grid, scheduler, std::move(left), std::move(frame.Tiles));
+  frame.Tiles.clear();
+  frame.Number = 0; // as long as it has no tiles
   this->RenderTiles(store, scene, request, last, records, tiles, frame);
-  return frame;
+  if (frame.IsAborted)
+  {
+    frame.Left = FindLeft(this->Messenger, grid, frame);
+  }
 }
 
 void FrameRenderer::Refine(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
@@ -91,7 +169,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   Frame& frame)
 {
   const auto start = std::chrono::steady_clock::now();
-  const double before = frame.IsAborted ? frame.Seconds : 0.0;
+  const Earlier earlier = GetEarlier(frame);
   std::vector<FrameEntry> gathered;
   if (records.Entries.empty())
   {
@@ -112,8 +190,8 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   const auto makePlan = [&] { return FrameEntry::CreatePlan(entries, request, last); };
   const auto report = [&](Frame& traced)
   {
-    Describe(store, traced);
-    traced.Seconds = before + SecondsSince(start);
+    Describe(store, earlier, traced);
+    traced.Seconds = earlier.Seconds + SecondsSince(start);
     return records.Report ? records.Report(traced) : std::vector<std::byte>();
   };
   const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
@@ -129,8 +207,14 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
       tracing.Trace(makePlan);
       tracing.GiveTo(frame);
     });
-  this->Messenger.Insist([&] { Describe(store, frame); });
-  frame.Seconds = before + SecondsSince(start);
+  this->Messenger.Insist([&] { Describe(store, earlier, frame); });
+  frame.Seconds = earlier.Seconds + SecondsSince(start);
+  frame.BusySeconds += earlier.BusySeconds;
+  if (frame.IsAborted)
+  {
+    frame.Reports = this->Messenger.GatherTogether("Ending the frame",
+      [&] { return records.Report ? records.Report(frame) : std::vector<std::byte>(); });
+  }
 }
 
 } // namespace rt

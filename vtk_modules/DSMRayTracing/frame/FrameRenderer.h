@@ -43,7 +43,7 @@ public:
     std::vector<FrameEntry> Entries;
     /// Local: called when this rank has traced its part of the frame, before the ranks agree on how it went. Its
     /// result comes to all ranks (Frame::Reports); its exception is the frame's failure. It is not always called if
-    /// the frame is aborted or fails.
+    /// the frame fails; if it is aborted, it is called when all have ended.
     dsm::FunctionRef<std::vector<std::byte>(const Frame&)> Report;
   };
 
@@ -54,7 +54,13 @@ public:
   /// frame is not affected.
   /// `last`: the view's last frame, if there is one; with work stealing, a rank begins with the tiles
   /// that it traced then; it also tells which bricks the tiles will probably need.
+  /// A frame that was aborted (SetWatch) has the tiles that were traced until then.
   Frame Render(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+    const Frame* last = nullptr, const Records& records = {});
+
+  /// Goes on with a frame whose Render, or Resume, was aborted, with the same request and scene: traces the tiles that
+  /// are left. Otherwise as Render; a failure leaves the frame without tiles.
+  void Resume(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request, Frame& frame,
     const Frame* last = nullptr, const Records& records = {});
 
   /// Adds the request's samples to a frame that has all samples before them: each rank continues with the tiles
@@ -72,10 +78,12 @@ public:
   /// Sets a function that rank 0's calling thread calls repeatedly during a frame. `part`: the approximate
   /// part of the frame that is traced, 0 to 1, estimated from rank 0's own tiles. The function returns
   /// whether to abort the frame. The ranks then finish their current tiles, and every rank's frame is marked
-  /// as aborted: a rendered frame is useless, a refined one can be refined again.
+  /// as aborted: Resume or Refine continue it.
   void SetWatch(std::function<bool(double part)> watch) { this->Watch = std::move(watch); }
 
 private:
+  void RenderLeft(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
+    std::vector<int> left, const Frame* last, const Records& records, Frame& frame);
   void RenderTiles(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     const Frame* last, const Records& records, TileSource& tiles, Frame& frame);
 

@@ -20,8 +20,11 @@ constexpr double SoonSeconds = 0.2;
 constexpr double DraftSeconds = 0.1;
 /// A picture is abandoned when it takes so many times as long as the last one.
 constexpr double Doubt = 1.25;
-/// Between a draft and a picture that takes longer, there are further drafts.
+/// The edge of a draft of what may take any time.
+constexpr int UnknownEdge = 8;
+/// Between the coarsest drafts and a picture that takes longer, there is another draft.
 constexpr double LongSeconds = 2.0;
+constexpr int SecondEdge = 4;
 
 constexpr double Unlimited = std::numeric_limits<double>::infinity();
 
@@ -53,16 +56,20 @@ std::vector<Resolution::Try> Resolution::GetTries(
   const Shown& shown, std::uint64_t content, const FrameRequest& request)
 {
   const double seconds = CountPixels(request) * shown.SecondsPerPixel;
+  if (content == shown.Begun)
+  {
+    return { { static_cast<int>(shown.BegunEdge), Unlimited } };
+  }
   if (content == shown.Content)
   {
-    const bool isNext = shown.Edge <= 2 || seconds <= LongSeconds;
-    return { { isNext ? 1 : static_cast<int>(shown.Edge) / 2, Unlimited } };
+    const bool isNext = shown.Edge <= SecondEdge || seconds <= LongSeconds;
+    return { { isNext ? 1 : SecondEdge, Unlimited } };
   }
   if (!shown.MayDraft)
   {
     return { { 1, Unlimited } };
   }
-  int edge = CoarsestEdge;
+  int edge = UnknownEdge;
   if (seconds > 0.0)
   {
     edge = seconds <= SoonSeconds ? 1 : 2;
@@ -72,12 +79,12 @@ std::vector<Resolution::Try> Resolution::GetTries(
     }
   }
   std::vector<Try> tries;
-  if (edge < CoarsestEdge)
+  if (edge < UnknownEdge)
   {
     // What is new may take longer than what was shown.
     tries.push_back({ edge, std::max(DraftSeconds, Doubt * seconds / (edge * edge)) });
   }
-  tries.push_back({ CoarsestEdge, Unlimited });
+  tries.push_back({ std::max(edge, UnknownEdge), Unlimited });
   return tries;
 }
 

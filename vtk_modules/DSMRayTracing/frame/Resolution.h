@@ -16,7 +16,7 @@ namespace rt
 /// they use only numbers that they have agreed on.
 struct Resolution
 {
-  static constexpr int CoarsestEdge = 8;
+  static constexpr int CoarsestEdge = 16;
   static constexpr double MediumErrors = 16.0; ///< LightTransport, of all such pictures
 
   /// The picture that a view has shown last, and what it shows next. Plain, for messages.
@@ -26,6 +26,8 @@ struct Resolution
     std::int64_t Edge = 1;
     double SecondsPerPixel = 0.0; ///< for each pixel that was traced; 0: unknown
     bool MayDraft = true; ///< false: the next picture is a step of an animation, which has no draft
+    std::uint64_t Begun = 0; ///< GetContent of a picture that was aborted; 0: none
+    std::int64_t BegunEdge = 1;
   };
 
   struct Try

@@ -5,6 +5,9 @@
 #include "DSMRayTracing/frame/Frame.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace rt
 {
@@ -25,6 +28,14 @@ public:
 
   int GetCount() const { return this->Columns * this->Rows; }
   int GetColumns() const { return this->Columns; }
+
+  /// Returns the numbers of all tiles.
+  std::vector<int> ListTiles() const
+  {
+    std::vector<int> tiles(static_cast<std::size_t>(this->GetCount()));
+    std::iota(tiles.begin(), tiles.end(), 0);
+    return tiles;
+  }
 
   /// The tile's place and size, without pixels.
   Tile CreateTile(int index) const

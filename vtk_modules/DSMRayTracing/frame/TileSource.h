@@ -34,17 +34,21 @@ public:
   virtual double EstimateShare(int ranks) const = 0;
   /// After the workers have stopped: how many tiles with pixels were not given out; adds them to `tiles`,
   /// which has room for them.
-  virtual std::size_t CountRest() const { return 0; }
-  virtual void TakeRest(std::vector<Tile>&) {}
+  virtual std::size_t CountRest() const = 0;
+  virtual void TakeRest(std::vector<Tile>& tiles) = 0;
 };
 
-/// New tiles, dealt out between the ranks.
+/// New tiles, dealt out between the ranks: those that are left of a frame.
 class NewTiles : public TileSource
 {
 public:
-  NewTiles(const TileGrid& grid, TileScheduler& scheduler)
+  /// `left`: ascending, the same on every rank. `traced`: this rank's other tiles.
+  NewTiles(
+    const TileGrid& grid, TileScheduler& scheduler, std::vector<int> left, std::vector<Tile> traced)
     : Grid(grid)
     , Scheduler(scheduler)
+    , Left(std::move(left))
+    , Traced(std::move(traced))
   {
   }
 
@@ -52,29 +56,54 @@ public:
   {
     plan.Tiles = this->Grid.GetCount();
     plan.Columns = this->Grid.GetColumns();
-    this->Scheduler.Begin(plan, workers);
+    plan.Left = this->Left;
+    const auto isTraced = [this](int tile)
+    { return !std::binary_search(this->Left.begin(), this->Left.end(), tile); };
+    plan.Mine.erase(std::remove_if(plan.Mine.begin(), plan.Mine.end(), isTraced), plan.Mine.end());
+    if (!this->Left.empty())
+    {
+      this->Scheduler.Begin(plan, workers);
+    }
   }
-  bool Service() override { return this->Scheduler.Service(); }
-  void End() override { this->Scheduler.End(); }
+  bool Service() override { return !this->Left.empty() && this->Scheduler.Service(); }
+  void End() override
+  {
+    if (!this->Left.empty())
+    {
+      this->Scheduler.End();
+    }
+  }
   void Cancel() override { this->Scheduler.Cancel(); }
   std::optional<Tile> Pop(dsm::WorkerSlots& slots) override
   {
-    const std::optional<int> number = this->Scheduler.Pop(slots);
-    return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
+    return this->Create(this->Left.empty() ? std::nullopt : this->Scheduler.Pop(slots));
   }
   std::optional<Tile> Peek(int ahead) override
   {
-    const std::optional<int> number = this->Scheduler.Peek(ahead);
-    return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
+    return this->Create(this->Left.empty() ? std::nullopt : this->Scheduler.Peek(ahead));
   }
   double EstimateShare(int ranks) const override
   {
-    return static_cast<double>(this->Grid.GetCount()) / ranks;
+    return static_cast<double>(this->Left.size()) / ranks;
+  }
+
+  std::size_t CountRest() const override { return this->Traced.size(); }
+  void TakeRest(std::vector<Tile>& tiles) override
+  {
+    std::move(this->Traced.begin(), this->Traced.end(), std::back_inserter(tiles));
+    this->Traced.clear();
   }
 
 private:
+  std::optional<Tile> Create(std::optional<int> number) const
+  {
+    return number ? std::optional<Tile>(this->Grid.CreateTile(*number)) : std::nullopt;
+  }
+
   const TileGrid Grid;
   TileScheduler& Scheduler;
+  const std::vector<int> Left;
+  std::vector<Tile> Traced;
 };
 
 /// The tiles that a rank has traced already, with their sums: further samples of them cost about

@@ -2,6 +2,7 @@
 #include "DSMRayTracing/schedule/CentralQueueScheduler.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace rt
@@ -15,7 +16,7 @@ struct TileRequest
   std::int32_t Count;
 };
 
-/// Tiles [First, First + Count); none: the frame has no further tiles.
+/// Places [First, First + Count) in the list of tiles; none: the frame has no further tiles.
 struct TileGrant
 {
   std::int32_t First;
@@ -37,7 +38,8 @@ CentralQueueScheduler::~CentralQueueScheduler() = default;
 
 void CentralQueueScheduler::Begin(const TilePlan& plan, int workers)
 {
-  this->Tiles = plan.Tiles;
+  this->Left = plan.Left;
+  this->Tiles = static_cast<int>(this->Left.size());
   this->Workers = std::max(workers, 1);
   this->LowWater = this->Workers;
   this->Next = 0;
@@ -97,9 +99,9 @@ void CentralQueueScheduler::Receive(dsm::Message&& message)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     // After a Cancel the tiles are dropped: the frame has failed anyway.
-    for (int tile = grant.First; !this->Exhausted && tile < grant.First + grant.Count; ++tile)
+    for (int place = grant.First; !this->Exhausted && place < grant.First + grant.Count; ++place)
     {
-      this->Granted.push_back(tile);
+      this->Granted.push_back(this->Left[static_cast<std::size_t>(place)]);
     }
     this->Exhausted = this->Exhausted || grant.Count == 0;
     this->LowWater = std::max(this->Workers, grant.Count / 2);
@@ -126,12 +128,17 @@ bool CentralQueueScheduler::Service()
   return true;
 }
 
+std::optional<int> CentralQueueScheduler::GetTile(int place) const
+{
+  return place < this->Tiles ? std::optional<int>(this->Left[static_cast<std::size_t>(place)])
+                             : std::nullopt;
+}
+
 std::optional<int> CentralQueueScheduler::Pop(dsm::WorkerSlots& slots)
 {
   if (this->IsSupervisor())
   {
-    const int tile = this->Next.fetch_add(1);
-    return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
+    return this->GetTile(this->Next.fetch_add(1));
   }
   std::unique_lock<std::mutex> lock(this->Mutex);
   const auto isSettled = [this] { return this->Exhausted || !this->Granted.empty(); };
@@ -158,8 +165,7 @@ std::optional<int> CentralQueueScheduler::Peek(int ahead)
 {
   if (this->IsSupervisor())
   {
-    const int tile = this->Next.load() + ahead;
-    return tile < this->Tiles ? std::optional<int>(tile) : std::nullopt;
+    return this->GetTile(this->Next.load() + ahead);
   }
   const std::lock_guard<std::mutex> lock(this->Mutex);
   const auto index = static_cast<std::size_t>(ahead);

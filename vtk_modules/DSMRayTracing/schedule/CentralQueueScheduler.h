@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <vector>
 
 namespace rt
 {
@@ -30,15 +31,17 @@ public:
   std::optional<int> Peek(int ahead) override;
 
 private:
+  std::optional<int> GetTile(int place) const;
   void Grant(dsm::Message&& request);
   void Receive(dsm::Message&& grant);
   bool IsSupervisor() const { return this->Messenger.GetRank() == 0; }
 
   dsm::Messenger& Messenger;
-  int Tiles = 0;
+  std::vector<int> Left; ///< tiles of the frame; ranks ask for places in this list
+  int Tiles = 0;         ///< their number
   int Workers = 1;
 
-  /// Supervisor: the next tile that no rank has. Its own workers take tiles from here without a message.
+  /// Supervisor: place of the next tile that no rank has. Its own workers take tiles from here without a message.
   std::atomic<int> Next{ 0 };
 
   /// Other ranks: what rank 0 gave and no worker took yet.

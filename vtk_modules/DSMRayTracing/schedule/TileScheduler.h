@@ -23,7 +23,9 @@ struct TilePlan
 {
   int Tiles = 0;   ///< numbered 0 .. Tiles - 1, row by row
   int Columns = 1; ///< tiles in a row
-  /// The last frame had the same tiles, and Mine are those that this rank traced; each was traced by
+  /// Tiles to trace, ascending; not empty. The others have been traced already.
+  std::vector<int> Left;
+  /// The last frame had the same tiles, and Mine are those of Left that this rank traced; each was traced by
   /// one rank.
   bool HasHistory = false;
   std::vector<int> Mine;
@@ -32,7 +34,7 @@ struct TilePlan
   int Fastest = -1;
 };
 
-/// Decides which rank, and which worker of it, traces which tile of a frame. Every tile of the frame
+/// Decides which rank, and which worker of it, traces which tile of a frame. Every tile that is left of the frame
 /// is given out exactly once over all ranks. The workers of a rank share its tiles.
 class TileScheduler
 {

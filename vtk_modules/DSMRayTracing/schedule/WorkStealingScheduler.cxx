@@ -2,7 +2,6 @@
 #include "DSMRayTracing/schedule/WorkStealingScheduler.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -61,11 +60,14 @@ WorkStealingScheduler::~WorkStealingScheduler() = default;
 
 std::vector<int> WorkStealingScheduler::CutInitially(const TilePlan& plan, int rank, int ranks)
 {
-  std::vector<int> tiles(static_cast<std::size_t>(plan.Tiles));
-  std::iota(tiles.begin(), tiles.end(), 0);
+  std::vector<int> tiles = plan.Left;
   SortAlongCurve(tiles, plan.Columns);
   const auto border = [&](int of)
-  { return tiles.begin() + static_cast<std::ptrdiff_t>(std::int64_t(plan.Tiles) * of / ranks); };
+  {
+    return tiles.begin() +
+      static_cast<std::ptrdiff_t>(
+        tiles.size() * static_cast<std::size_t>(of) / static_cast<std::size_t>(ranks));
+  };
   return { border(rank), border(rank + 1) };
 }
 

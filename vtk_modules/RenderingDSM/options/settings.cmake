@@ -91,6 +91,11 @@ dsm_setting(Scheduler OWNER ranks TYPE enum DEFAULT 0
   TEXT "How tiles of the picture are distributed to ranks. Work stealing: a rank starts with the tiles that it traced
     in the last picture, and takes tiles from other ranks when it has none left. Central queue: rank 0 deals out
     tiles. The picture is the same.")
+dsm_setting(FrameBudget OWNER ranks TYPE double DEFAULT 0.1 RANGE 0 60
+  LABEL "Frame Budget (s)" ZERO "none"
+  TEXT "Tracing time in seconds after which the application shows a picture, whatever is missing: the rest shows the
+    last picture, or a coarser one, and is traced while the view is still. Screenshots and scripts are always
+    complete. 0 waits for each picture.")
 dsm_setting(SilenceLimit OWNER ranks TYPE int DEFAULT 60 RANGE 0
   LABEL "Silence Limit (s)" ZERO "none"
   TEXT "Time in seconds after which an unresponsive rank is treated as failed. Frames then end on the other ranks with

@@ -152,11 +152,6 @@ void vtkDSMScene::EndWithRenderer()
   const vtkSmartPointer<vtkDSMScene> rendering = std::move(this->Self->Rendering);
 }
 
-/// Restores the prop's bounds, which were extended for the frame's delivery. Code that examines the
-/// renderer's props between frames must not see the extended bounds. A single process finds the
-/// objects themselves, whose data may be newer than the last image. With several processes, none
-/// knows the bounds of the others' objects that are not traced; without the last image's bounds,
-/// ParaView would compute the camera's clipping range from too little.
 void vtkDSMScene::EndFrame()
 {
   Internals& self = *this->Self;
@@ -167,8 +162,6 @@ void vtkDSMScene::EndFrame()
     self.Renderer->Render();
     return;
   }
-  self.Prop->SetBounds(self.Bounds);
-  self.Prop->SetUseBounds(self.Group && self.Group->GetMessenger().GetSize() > 1);
   this->EndReading();
 }
 
@@ -177,10 +170,17 @@ void vtkDSMScene::ForgetFrameBounds()
   this->Self->Prop->UseBoundsOff();
 }
 
-/// Publications of the frame have taken the bricks that were read ahead for it; the rest is
-/// useless.
+/// Restores the prop's bounds, which were extended for the frame's delivery. Code that examines the
+/// renderer's props between frames must not see the extended bounds. A single process finds the
+/// objects themselves, whose data may be newer than the last image. With several processes, none
+/// knows the bounds of the others' objects that are not traced; without the last image's bounds,
+/// ParaView would compute the camera's clipping range from too little. And publications of the frame have taken the
+/// bricks that were read ahead for it; the rest is useless.
 void vtkDSMScene::EndReading()
 {
+  Internals& self = *this->Self;
+  self.Prop->SetBounds(self.Bounds);
+  self.Prop->SetUseBounds(self.Group && self.Group->GetMessenger().GetSize() > 1);
   vol::ReadAhead::GetShared().Tidy();
   this->Self->Busy.reset();
 }
@@ -252,22 +252,22 @@ void vtkDSMScene::SetHidden(bool hidden)
 
 void vtkDSMScene::SetSamplesPerFrame(int samples)
 {
-  this->Self->Pace.Samples = std::max(0, samples);
+  this->Self->SamplesPerFrame = std::max(0, samples);
 }
 
 int vtkDSMScene::GetSamplesPerFrame() const
 {
-  return this->Self->Pace.Samples;
+  return this->Self->SamplesPerFrame;
 }
 
 void vtkDSMScene::SetSecondsPerFrame(double seconds)
 {
-  this->Self->Pace.Seconds = std::max(0.0, seconds);
+  this->Self->SecondsPerFrame = std::max(0.0, seconds);
 }
 
 double vtkDSMScene::GetSecondsPerFrame() const
 {
-  return this->Self->Pace.Seconds;
+  return this->Self->SecondsPerFrame;
 }
 
 void vtkDSMScene::SetInteractiveReduction(int edge)
@@ -278,6 +278,16 @@ void vtkDSMScene::SetInteractiveReduction(int edge)
 int vtkDSMScene::GetInteractiveReduction() const
 {
   return this->Self->InteractiveReduction;
+}
+
+void vtkDSMScene::SetInteracting(bool interacting)
+{
+  this->Self->IsInteracting = interacting;
+}
+
+bool vtkDSMScene::GetInteracting() const
+{
+  return this->Self->IsInteracting;
 }
 
 void vtkDSMScene::SetShowsDrafts(bool drafts)
@@ -308,6 +318,16 @@ void vtkDSMScene::SetTileDisplay(int columns, int rows, int gapX, int gapY)
 bool vtkDSMScene::IsRefined() const
 {
   return this->Self->Accumulation.IsComplete();
+}
+
+bool vtkDSMScene::HasBegun() const
+{
+  return this->Self->HasBegun;
+}
+
+double vtkDSMScene::GetRefinedPart() const
+{
+  return this->Self->Accumulation.GetPart();
 }
 
 int vtkDSMScene::GetNumberOfSamples() const
@@ -378,6 +398,22 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
   const bool traced = this->TraceFrame();
   this->EndReading();
   self.Image.reset();
+  return traced;
+}
+
+bool vtkDSMScene::Advance(std::function<bool()> goesOn)
+{
+  Internals& self = *this->Self;
+  if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing || Internals::TracingTiles ||
+    !self.Prop->GetVisibility() || this->IsRefined())
+  {
+    return false;
+  }
+  const vtkSmartPointer<vtkDSMScene> tracing = this; // as Trace
+  self.GoesOn = std::move(goesOn);
+  const bool traced = this->TraceFrame();
+  this->EndReading();
+  self.GoesOn = nullptr;
   return traced;
 }
 

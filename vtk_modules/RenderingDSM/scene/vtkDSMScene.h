@@ -177,8 +177,11 @@ public:
 
   ///@{
   /**
-   * Time in seconds that a render may take that adds samples to a picture. If SamplesPerFrame takes less, by the
-   * time of the last render, the render adds more samples. 0 (the default): never. Same value on every rank.
+   * Time in seconds after which tracing ends, whatever is missing, if SamplesPerFrame is positive or the window wants
+   * interactive rates. Tiles that are not ready show the last picture, moved as the camera has. A render, or Advance,
+   * continues with them. If there is time left, a still picture gets more samples than SamplesPerFrame. A first
+   * picture, and one of data that take the place of others, such as time steps, takes the time that it needs. 0 (the
+   * default): there is no limit. Same value on every rank.
    */
   void SetSecondsPerFrame(double seconds);
   double GetSecondsPerFrame() const;
@@ -192,6 +195,14 @@ public:
    */
   void SetInteractiveReduction(int edge);
   int GetInteractiveReduction() const;
+  ///@}
+
+  ///@{
+  /**
+   * Treats renders as if the window wanted interactive rates. Off by default. Same value on every rank.
+   */
+  void SetInteracting(bool interacting);
+  bool GetInteracting() const;
   ///@}
 
   ///@{
@@ -222,12 +233,33 @@ public:
   void SetTileDisplay(int columns, int rows, int gapX = 0, int gapY = 0);
 
   /**
+   * Continues with the picture that was drawn last, without drawing: the next render shows what has come. On rank 0,
+   * `goesOn` is called again and again, and returns false to end this; other ranks pass any function. Ends, too, when
+   * the picture is refined. Does nothing if there is something else to draw. Returns whether it could go on; false,
+   * with an error as for a frame, if that fails.
+   *
+   * Collective, between frames.
+   */
+  VTK_WRAPEXCLUDE bool Advance(std::function<bool()> goesOn);
+
+  /**
    * Returns whether the last picture has all the samples that were asked for; the same on every rank. False, too,
    * after a render that was aborted: while it traces, the window of rank 0 is asked for its abort status
-   * (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last picture; what was traced
-   * of samples that are added to it is not lost.
+   * (vtkRenderWindow::CheckAbortStatus, AbortCheckEvent), and then all ranks keep the last picture. The next
+   * render continues with the tiles and samples of this one.
    */
   bool IsRefined() const;
+
+  /**
+   * Returns whether the last render began a picture: the scene or the camera had changed. The same on every rank.
+   */
+  bool HasBegun() const;
+
+  /**
+   * Returns the part of the picture's samples that is there, 0 to 1; of a first sample, the part of its tiles. Drafts
+   * do not count. The same on every rank.
+   */
+  double GetRefinedPart() const;
 
   /**
    * Returns the number of samples of each pixel in the last picture; 0 without one. The same on every rank.

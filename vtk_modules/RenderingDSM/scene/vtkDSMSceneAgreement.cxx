@@ -432,6 +432,10 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
       return bytes;
     });
   CheckHoldings(records);
+  if (NeedsUpdate(records) && this->GoesOn)
+  {
+    return; // something else is to be drawn first
+  }
   if (NeedsUpdate(records))
   {
     scene = {}; // bricks are given up by all ranks, or by none
@@ -484,14 +488,23 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   };
   rt::Picture picture;
   const auto result = this->TraceScene(
-    scene, request, std::move(offers), views.front().Shown, coarser, limit, picture);
-  if (result == rt::FrameAccumulation::Result::Aborted)
+    { scene, {}, request, views.front().Shown, coarser, limit, picture }, std::move(offers));
+  if (this->GoesOn)
   {
-    // The renderer goes on, with the last picture: other ranks may wait for what this one draws.
-    this->Renderer->GetRenderWindow()->SetAbortRender(0);
     return;
   }
   const rt::Frame& frame = this->Accumulation.GetFrame();
+  if (result == rt::FrameAccumulation::Result::Aborted)
+  {
+    // The renderer goes on: other ranks may wait for what this one draws.
+    this->Renderer->GetRenderWindow()->SetAbortRender(0);
+    if (this->SecondsPerFrame > 0.0 && frame.Number > 0)
+    {
+      this->DrawPicture(
+        this->FillGaps(request), request, projection, scene.View, request.PixelSize == 1, false);
+    }
+    return;
+  }
   if (this->Image)
   {
     this->FillImage(rt::GatherFrame(messenger, frame));

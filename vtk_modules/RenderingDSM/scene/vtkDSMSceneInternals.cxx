@@ -4,7 +4,6 @@
 #include "DSMCore/memory/HostMemory.h"
 #include "vtkDSMFrameImage.h"
 #include "vtkDSMFrameNotes.h"
-#include "vtkDSMProgress.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkMatrix4x4.h"
@@ -13,10 +12,8 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,26 +27,6 @@ constexpr double InteractiveRate = 1.0;
 /// A pixel's color and depth, in a picture without a window: as tiles, as the message with them, as the messages of all
 /// ranks, and as the picture or, later, the image.
 constexpr std::uint64_t BytesOfImagePixel = 4 * (4 + sizeof(float));
-
-/// When a frame that takes long tells how far it is, first and then again.
-constexpr std::chrono::milliseconds FirstTold(1500);
-constexpr std::chrono::milliseconds ThenTold(500);
-
-class Raised
-{
-public:
-  explicit Raised(bool& flag)
-    : Flag(flag)
-  {
-    this->Flag = true;
-  }
-  ~Raised() { this->Flag = false; }
-  Raised(const Raised&) = delete;
-  Raised& operator=(const Raised&) = delete;
-
-private:
-  bool& Flag;
-};
 
 /// Returns the text of a failure.
 std::string Describe(const dsm::Status& outcome)
@@ -166,144 +143,6 @@ std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
     this->Group->GetPublications().Forget();
   }
   return Describe(outcome);
-}
-
-/// Pictures to try, up to the first that is not abandoned. `request`: of edge 1.
-std::vector<vtkDSMScene::Internals::Try> vtkDSMScene::Internals::GetTries(
-  const rt::Resolution::Shown& shown, int coarser, std::uint64_t content,
-  const rt::FrameRequest& request) const
-{
-  std::vector<Try> tries;
-  if (this->DrawsDrafts())
-  {
-    for (const rt::Resolution::Try& picture : rt::Resolution::GetTries(shown, content, request))
-    {
-      tries.push_back({ 0, picture });
-    }
-    return tries;
-  }
-  const double unlimited = std::numeric_limits<double>::infinity();
-  for (const int level : this->Detail.GetTries(coarser))
-  {
-    tries.push_back({ level, { this->GetMovingEdge(request), unlimited } });
-  }
-  return tries;
-}
-
-/// Collective: the scene's objects come in again where they are shown at another level of detail. `request`: of edge
-/// 1; becomes that of the picture. `offers`: of the first try, if it is of the finest data, and no draft. `shown`: by
-/// rank 0. `coarser`: levels of detail that may stand in. `limit`: collective, ends the rays of a request (LimitRays).
-/// `picture`: what this rank draws, as far as it needs no other ranks, when the frame was traced.
-rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(rt::Scene& scene,
-  rt::FrameRequest& request, Offers offers, const rt::Resolution::Shown& shown, int coarser,
-  const std::function<void(rt::FrameRequest&)>& limit, rt::Picture& picture)
-{
-  dsm::Messenger& messenger = this->Group->GetMessenger();
-  dsm::BlockStore& store = this->Group->GetStore();
-  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
-  const int wanted = this->Light->GetSamplesPerPixel();
-  const rt::FrameAccumulation::Pace pace = this->GetPace();
-  const auto report = [&](const rt::Frame& frame)
-  {
-    picture = this->Image ? rt::Picture() : this->Delivery.Assemble(frame);
-    return vtkDSMStatistics::CreateReport(store, frame, messenger.GetRank(), messenger.GetSize());
-  };
-  using Result = rt::FrameAccumulation::Result;
-  Result result = Result::Aborted;
-  const Raised tracing(TracingTiles);
-  using Clock = std::chrono::steady_clock;
-  auto told = Clock::now() + FirstTold;
-  rt::FrameRequest whole;
-  std::uint64_t content = 0;
-  std::vector<Try> tries;
-  const bool drawsDrafts = this->DrawsDrafts();
-  messenger.Insist(
-    [&]
-    {
-      whole = request;
-      content = rt::Resolution::GetContent(scene, request);
-      tries = this->GetTries(shown, coarser, content, request);
-    });
-  for (auto next = tries.begin(); next != tries.end() && result == Result::Aborted; ++next)
-  {
-    const int edge = next->Picture.Edge;
-    const bool isDraft = drawsDrafts && edge > 1;
-    if (next == tries.begin() || edge != (next - 1)->Picture.Edge)
-    {
-      messenger.Insist([&] { request = rt::Resolution::Reduce(whole, edge); });
-      limit(request);
-    }
-    if (next->Coarser > 0 || isDraft)
-    {
-      offers = messenger.GatherValueTogether("Preparing the frame",
-        [&]
-        {
-          if (next->Coarser > 0)
-          {
-            this->Members.AddTo(scene, next->Coarser);
-          }
-          if (isDraft)
-          {
-            request.IsPreview = true;
-            scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
-          }
-          return this->Accumulation.CreateOffer(store, scene, request, wanted, pace);
-        });
-    }
-    this->Detail.Begin();
-    const auto start = Clock::now();
-    const bool mayWaitTooLong = next + 1 != tries.end() && !drawsDrafts;
-    const auto watch =
-      [this, window, mayWaitTooLong, &told, start, seconds = next->Picture.Seconds](double part)
-    {
-      const auto now = Clock::now();
-      if (now > told)
-      {
-        this->TellOfTracing(part);
-        told = now + ThenTold;
-      }
-      return (window && window->CheckAbortStatus() != 0) ||
-        std::chrono::duration<double>(now - start).count() > seconds ||
-        (mayWaitTooLong && this->Detail.IsTooLong(this->Group->GetStore()));
-    };
-    messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
-    result = this->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store }, offers,
-      scene, request, wanted, pace, this->Statistics->GetFrameSeconds(), report);
-    if (result == Result::Traced)
-    {
-      messenger.Insist(
-        [&]
-        {
-          this->Statistics->Take(this->Accumulation.GetFrame(),
-            isDraft ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
-            next->Coarser);
-        });
-      if (!drawsDrafts && tries.size() > 1)
-      {
-        this->Detail.Note(next->Coarser, this->Statistics->GetNumberOfMisses(),
-          this->Statistics->GetFrameSeconds());
-      }
-    }
-    if (result != Result::Aborted)
-    {
-      this->Shown = { content, edge,
-        this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()), true };
-    }
-    if (isDraft)
-    {
-      this->Accumulation.Postpone();
-    }
-  }
-  this->Group->GetFrameRenderer().SetWatch({});
-  return result;
-}
-
-void vtkDSMScene::Internals::TellOfTracing(double part) const
-{
-  if (vtkAlgorithm* const mapper = this->Members.GetShown().front().State->GetAlgorithm())
-  {
-    vtkDSMProgress::TellOfTracing(mapper, part);
-  }
 }
 
 /// Levels below the finest that may stand in, as far as this rank knows.
@@ -425,7 +264,7 @@ void vtkDSMScene::Internals::ShowWhole() const
 bool vtkDSMScene::Internals::IsInteractive() const
 {
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
-  return window && window->GetDesiredUpdateRate() >= InteractiveRate;
+  return window && (this->IsInteracting || window->GetDesiredUpdateRate() >= InteractiveRate);
 }
 
 bool vtkDSMScene::Internals::IsReduced() const
@@ -444,7 +283,7 @@ int vtkDSMScene::Internals::GetMovingEdge(const rt::FrameRequest& request) const
 /// Returns whether a still picture may be coarse, because others are to follow.
 bool vtkDSMScene::Internals::DrawsDrafts() const
 {
-  return this->ShowsDrafts && !this->Image && this->Pace.Samples > 0 && !this->IsInteractive();
+  return this->ShowsDrafts && !this->Image && this->SamplesPerFrame > 0 && !this->IsInteractive();
 }
 
 rt::FrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
@@ -453,7 +292,9 @@ rt::FrameAccumulation::Pace vtkDSMScene::Internals::GetPace() const
   {
     return {};
   }
-  return this->IsInteractive() ? rt::FrameAccumulation::Pace{ 1, 0.0 } : this->Pace;
+  return this->IsInteractive()
+    ? rt::FrameAccumulation::Pace{ 1, false }
+    : rt::FrameAccumulation::Pace{ this->SamplesPerFrame, this->SecondsPerFrame > 0.0 };
 }
 
 /// The application may have taken the prop away with its own. And what shows through a translucent surface, or beside

@@ -96,8 +96,16 @@ public:
   inline static bool TracingTiles = false;
   bool IsTraced =
     false; ///< the frame, of data that were taken in: should it fail, the last picture stays
-  rt::FrameAccumulation::Pace Pace; ///< pace of still images
+  int SamplesPerFrame = 0;      ///< of still images
+  double SecondsPerFrame = 0.0; ///< 0: unlimited
+  /// The picture that was drawn last gets tiles and samples, and nothing is drawn, as long as this returns true on rank
+  /// 0; empty: a frame is drawn.
+  std::function<bool()> GoesOn;
+  bool HasAdvanced = false;          ///< since the last render of another picture
+  bool HasBegun = false;             ///< the last render, of a picture
+  glm::dmat4 LastWorldToClip{ 1.0 }; ///< of the accumulation's last whole frame
   int InteractiveReduction = 0;
+  bool IsInteracting = false; ///< whatever rate the window wants
   bool ShowsDrafts = false;
   bool HasNextStep = false;    ///< new data in place of others that were shown
   rt::Resolution::Shown Shown; ///< on every rank the same, but after a failure
@@ -139,11 +147,29 @@ private:
     int Coarser;
     rt::Resolution::Try Picture;
   };
-  std::vector<Try> GetTries(const rt::Resolution::Shown& shown, int coarser, std::uint64_t content,
-    const rt::FrameRequest& request) const;
-  rt::FrameAccumulation::Result TraceScene(rt::Scene& scene, rt::FrameRequest& request,
-    Offers offers, const rt::Resolution::Shown& shown, int coarser,
-    const std::function<void(rt::FrameRequest&)>& limit, rt::Picture& picture);
+  /// A picture to trace.
+  struct Task
+  {
+    rt::Scene& Scene;
+    rt::FrameRequest Whole;      ///< of edge 1
+    rt::FrameRequest& Request;   ///< that of the picture
+    rt::Resolution::Shown Shown; ///< by rank 0
+    int Coarser;                 ///< levels of detail that may stand in
+    const std::function<void(rt::FrameRequest&)>&
+      Limit; ///< collective, ends the rays of a request (LimitRays)
+    /// What this rank draws, as far as it needs no other ranks, when the frame was traced.
+    rt::Picture& Picture;
+    std::uint64_t Content = 0;
+    double MediumErrors = 1.0;
+  };
+  std::vector<Try> GetTries(const Task& task) const;
+  rt::FrameAccumulation::Result TraceScene(Task task, Offers offers);
+  bool IsLimited(const Task& task) const;
+  bool IsUnderWay(const Task& task) const;
+  rt::FrameAccumulation::Result TracePicture(Task& task, Offers& offers);
+  void NoteTraced(const Task& task, const Try& done);
+  void NoteAborted(const Task& task, const Try& begun);
+  rt::Picture FillGaps(const rt::FrameRequest& request);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);
