@@ -15,7 +15,7 @@ packages=(
   libglm-dev libhwy-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
   liblz4-dev liblzma-dev libbz2-dev
-  libx11-dev libxi-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
+  libx11-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )
 # And those that the tests need besides.

@@ -125,7 +125,7 @@ class Watch:
             interactor.SetEventInformation(width // 2 + 20 * step, height // 2 + 10 * step)
             interactor.InvokeEvent("MouseMoveEvent")
             yield
-            check(self.get_samples() == 1, f"while the mouse moves, there is one sample ({step})")
+            check(self.get_samples() <= 1, f"while the mouse moves, there is one sample at most ({step})")
         interactor.InvokeEvent("LeftButtonReleaseEvent")
         check(list(self.view.CameraPosition) != position, "the mouse turns the scene")
         self.begin()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMTracedDisplay.h"
 
+#include "vtkDSMMemoryOptions.h"
 #include "vtkDSMScene.h"
 #include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMExportLook.h"
@@ -291,7 +292,9 @@ void vtkPVDSMTracedDisplay::PrepareRender(const double* dataBounds, vtkInformati
   this->SelectionMapper->SetShownBounds(dataBounds);
   this->SelectionActor->SetUseBounds(selecting); // ranks draw where there is something
   this->SelectionActor->SetUserMatrix(matrix);
-  vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo, this->FrameReport);
+  auto* const memory = vtkDSMMemoryOptions::SafeDownCast(this->MemoryOptions);
+  vtkPVDSMDelivery::Choose(this->Scene, this->Representation->GetView(), inInfo, this->FrameReport,
+    memory ? memory->GetFrameBudget() : 0.0);
 }
 
 void vtkPVDSMTracedDisplay::TakeBounds()

@@ -80,9 +80,6 @@ public:
   }
 };
 
-/// Seconds that a render takes at most to add samples to a still picture, if one takes less.
-constexpr double SecondsPerFrame = 0.15;
-
 /// Returns whether the image may be refined after it is shown. A captured image is kept, so it must
 /// be complete at once; stereo renders both eyes in turns.
 bool CanRefine(vtkPVRenderView* view)
@@ -307,8 +304,8 @@ void vtkPVDSMDelivery::SelectTheNearest(vtkView* view)
   }
 }
 
-void vtkPVDSMDelivery::Choose(
-  vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo, vtkPVDSMFrameReport* report)
+void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView, vtkInformation* inInfo,
+  vtkPVDSMFrameReport* report, double seconds)
 {
   auto* view = vtkPVRenderView::SafeDownCast(anyView);
   auto* controller = scene->GetController();
@@ -321,15 +318,18 @@ void vtkPVDSMDelivery::Choose(
   const bool takesFew =
     report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
-  scene->SetShowsDrafts(report && !report->GetInteracting());
-  scene->SetSecondsPerFrame(report && report->GetInteracting() ? 0.0 : SecondsPerFrame);
+  scene->SetInteracting(report && report->GetInteracting());
+  scene->SetShowsDrafts(report != nullptr);
+  const bool othersFollow =
+    report && (report->GetInteracting() || (report->GetProgressive() && !IsCapturing(anyView)));
+  scene->SetSecondsPerFrame(othersFollow ? seconds : 0.0);
   // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how
   // coarse it is at least.
   const bool usesLevels =
     view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view);
   scene->SetInteractiveReduction(
     usesLevels ? GetReduction(view->GetLODResolution()) : (takesFew ? 1 : 0));
-  scene->SetAlwaysFinest(view && AskedView::IsCapturing(view));
+  scene->SetAlwaysFinest(!(report && report->GetInteracting()) && IsCapturing(anyView));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

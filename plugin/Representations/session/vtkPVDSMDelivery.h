@@ -52,9 +52,9 @@ public:
   static bool IsCapturing(vtkView* view);
 
   /// For REQUEST_RENDER: chooses the way that suits the view's other contents, and the purpose of the render.
-  /// `report` knows the state of the client; may be null.
-  static void Choose(
-    vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo, vtkPVDSMFrameReport* report);
+  /// `report` knows the state of the client; may be null. `seconds`: that a render may take if others are to follow.
+  static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo,
+    vtkPVDSMFrameReport* report, double seconds);
 
 private:
   static void SelectTheNearest(vtkView* view);

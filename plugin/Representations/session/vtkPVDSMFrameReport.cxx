@@ -4,12 +4,20 @@
 #include "vtkDSMScene.h"
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
+#include "vtkPVDSMClientWatch.h"
 
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 
 #include <algorithm>
+#include <chrono>
+
+namespace
+{
+/// For which tracing goes on whatever the client sends, so that one that asks often does not stop it.
+constexpr std::chrono::milliseconds LeastTime(50);
+}
 
 vtkStandardNewMacro(vtkPVDSMFrameReport);
 
@@ -80,6 +88,29 @@ int* vtkPVDSMFrameReport::GetSamples()
   this->Samples[0] = scene ? scene->GetNumberOfSamples() : 0;
   this->Samples[1] = scene ? scene->GetNumberOfSamplesWanted() : 0;
   return this->Samples;
+}
+
+double* vtkPVDSMFrameReport::GetRefinement()
+{
+  vtkDSMScene* const scene = this->FindScene();
+  this->Refinement[0] = scene ? scene->GetNumberOfSamples() : 0.0;
+  this->Refinement[1] = scene ? scene->GetNumberOfSamplesWanted() : 0.0;
+  this->Refinement[2] = scene ? scene->GetRefinedPart() : 1.0;
+  this->Refinement[3] = scene && scene->HasBegun() ? 1.0 : 0.0;
+  return this->Refinement;
+}
+
+void vtkPVDSMFrameReport::Advance(double seconds)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto least = Clock::now() + LeastTime;
+  const auto end = Clock::now() +
+    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  if (vtkDSMScene* const scene = this->FindScene())
+  {
+    scene->Advance([=, client = vtkPVDSMClientWatch()]
+      { return Clock::now() < least || (Clock::now() < end && !client.HasSent()); });
+  }
 }
 
 void vtkPVDSMFrameReport::SetProgressive(bool progressive)

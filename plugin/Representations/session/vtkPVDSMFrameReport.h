@@ -75,6 +75,18 @@ public:
    */
   int* GetSamples() VTK_SIZEHINT(2);
 
+  /**
+   * Samples that each pixel of the view's picture has, those that were asked for, the part of all samples that is
+   * there, 0 to 1, and 1 if the last render began another picture, else 0. A picture without data is whole.
+   */
+  double* GetRefinement() VTK_SIZEHINT(4);
+
+  /**
+   * Collective. Continues to trace the view's picture, without drawing, until it has all samples, or so many seconds
+   * are over, or, after a moment, this process's client has sent something.
+   */
+  void Advance(double seconds);
+
   ///@{
   /**
    * If true, the client continues to render a still view until it is refined, so a render need not take all
@@ -109,6 +121,7 @@ private:
   bool Progressive = false;
   bool Interacting = false;
   int Samples[2] = { 0, 0 };
+  double Refinement[4] = { 0.0, 0.0, 1.0, 0.0 };
   int SlicePoints[3] = { 0, 0, 0 };
   double Range[2] = { 0.0, 0.0 };
   std::string Text;

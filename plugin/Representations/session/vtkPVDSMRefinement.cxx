@@ -12,7 +12,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkProcessModule.h"
-#include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkSMCollaborationManager.h"
 #include "vtkSMProperty.h"
@@ -22,6 +21,7 @@
 #include "vtkSMSession.h"
 #include "vtkSMTrace.h"
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <string>
@@ -29,13 +29,28 @@
 namespace
 {
 
-/// Milliseconds that the application has for its events before the next render begins. While
-/// something else is going on, the next look at it is later.
-constexpr unsigned long ShortDelay = 10;
-constexpr unsigned long LongDelay = 100;
+/// Seconds that the application has for its events before it goes on. While something else is going on, the next
+/// look at it is later.
+constexpr double ShortDelay = 0.01;
+constexpr double LongDelay = 0.1;
 
-/// Renders that add no sample, one after the other: then something other than the user draws the view
-/// with changing cameras, which would never end.
+/// Seconds for which a client that traces itself hears nothing of the user.
+constexpr double LocalSeconds = 0.1;
+/// Seconds from one picture to the next, and the part of the time since the first that they are at least: so pictures
+/// cost little of a long frame, and few bytes. After the longest time a server begins to wait for its client.
+constexpr double LeastSeconds = 0.1;
+constexpr double MostSeconds = 1.0;
+constexpr double WaitingPart = 0.3;
+/// A server that was asked anything else is told again to go on after so many seconds.
+constexpr double ReminderSeconds = 0.25;
+/// Seconds for which a server traces without its client.
+constexpr double AdvanceSeconds = 10.0;
+
+/// The status bar tells of pictures that take longer.
+constexpr std::chrono::seconds LongTime(1);
+
+/// Renders of its own that begin another picture, one after the other: then something other than the user draws the
+/// view with changing cameras, which would never end.
 constexpr int LongestStandstill = 20;
 
 std::map<vtkPVRenderView*, vtkWeakPointer<vtkPVDSMRefinement>>& GetRegistry()
@@ -116,8 +131,17 @@ void ForEachReport(vtkSMProxy* view, const Visit& visit)
     });
 }
 
-/// Calls a method of a frame report where the view is traced.
-void Tell(vtkSMProxy* report, const char* method, int value)
+/// The frame report of a dataset that is traced; null if there is none.
+vtkSMProxy* FindReport(vtkSMProxy* view)
+{
+  vtkSMProxy* first = nullptr;
+  ForEachReport(view, [&](vtkSMProxy* report) { first = first ? first : report; });
+  return first;
+}
+
+/// Calls a method of a frame report where the view is traced. A client does not wait for its server.
+template <class Value>
+void Tell(vtkSMProxy* report, const char* method, Value value)
 {
   report->UpdateVTKObjects();
   vtkClientServerStream stream;
@@ -191,7 +215,6 @@ void vtkPVDSMRefinement::FollowInteractor()
   }
   this->LeaveInteractor();
   this->Interactor = interactor;
-  this->Window = this->View->GetRenderWindow();
   if (interactor)
   {
     this->InteractorObservers = { interactor->AddObserver(vtkCommand::StartInteractionEvent, this,
@@ -200,11 +223,6 @@ void vtkPVDSMRefinement::FollowInteractor()
       interactor->AddObserver(
         vtkCommand::EndInteractionEvent, this, &vtkPVDSMRefinement::OnInteractionEnds, 1.0f),
       interactor->AddObserver(vtkCommand::TimerEvent, this, &vtkPVDSMRefinement::OnTimer) };
-  }
-  if (this->Window)
-  {
-    this->WindowObserver = this->Window->AddObserver(
-      vtkCommand::AbortCheckEvent, this, &vtkPVDSMRefinement::OnAbortCheck);
   }
 }
 
@@ -218,10 +236,6 @@ void vtkPVDSMRefinement::LeaveInteractor()
     }
   }
   this->InteractorObservers.clear();
-  if (this->Window)
-  {
-    this->Window->RemoveObserver(this->WindowObserver);
-  }
 }
 
 /// Returns whether the application handles events, so that timers expire.
@@ -231,7 +245,7 @@ bool vtkPVDSMRefinement::CanGoOn() const
     !this->View->GetSession()->IsMultiClients();
 }
 
-void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interactive)
+void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
 {
   this->Forget();
   this->FollowInteractor();
@@ -239,13 +253,10 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interac
   {
     return;
   }
-  this->CanAbort = *static_cast<int*>(interactive) == 0 &&
-    !vtkPVDSMDelivery::IsCapturing(
-      vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
-  this->IsAborted = false;
   if (!this->IsRefining)
   {
-    this->Input.Begin(); // most probably, this render follows what the user did
+    this->Begun = Clock::now(); // most probably, this render follows what the user did
+    this->Part = 0.0;
   }
   ForEachReport(this->View,
     [this](vtkSMProxy* report)
@@ -259,13 +270,12 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void* interac
 
 void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interactive)
 {
-  this->CanAbort = false;
   this->IsRefined = true;
   const bool goesOn = this->CanGoOn();
   vtkSMSession* const session = this->View->GetSession();
   const bool isStill = *static_cast<int*>(interactive) == 0;
   // More samples of a picture are of the same data: a server is not asked again.
-  const bool isSame = this->IsRefining && this->Samples > 0;
+  const bool isSame = this->IsRefining && this->Part > 0.0;
   // With several clients, the master decides what the others show.
   if (isStill && !isSame &&
     (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
@@ -282,35 +292,81 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   {
     return;
   }
-  const int before = this->Samples;
-  int samples[2] = { 0, 0 };
-  ForEachReport(this->View,
-    [&](vtkSMProxy* report)
-    {
-      if (samples[1] == 0)
-      {
-        report->UpdatePropertyInformation(report->GetProperty("DSMSamples"));
-        vtkSMPropertyHelper(report, "DSMSamples").Get(samples, 2);
-      }
-    });
-  this->Samples = samples[0];
-  const bool stoodStill = this->IsRefining && !this->IsAborted && this->Samples <= before;
-  this->Standstill = stoodStill ? this->Standstill + 1 : 0;
-  // A picture that was ended after the tracing lacks what is drawn last, such as the orientation axes.
-  this->IsRefined =
-    !this->IsAborted && (samples[0] >= samples[1] || this->Standstill > LongestStandstill);
+  const double before = this->Part;
+  this->TakeState();
+  this->Standstill = this->IsRefining && this->HasBegun ? this->Standstill + 1 : 0;
+  this->IsRefined = this->IsRefined || this->Standstill > LongestStandstill;
   if (!this->IsRefined && !this->IsInteracting)
   {
-    this->RenderLater(ShortDelay);
+    this->PlanNext(this->Part - before);
+    this->GoOn();
   }
 }
 
-void vtkPVDSMRefinement::OnAbortCheck(vtkObject*, unsigned long, void*)
+/// Asks how far the picture is.
+void vtkPVDSMRefinement::TakeState()
 {
-  if (this->CanAbort && this->Input.HasPressed())
+  double state[4] = { 0.0, 0.0, 1.0, 0.0 };
+  if (vtkSMProxy* const report = FindReport(this->View))
   {
-    this->IsAborted = true;
-    this->Window->SetAbortRender(1);
+    report->UpdatePropertyInformation(report->GetProperty("DSMRefinement"));
+    vtkSMPropertyHelper(report, "DSMRefinement").Get(state, 4);
+  }
+  this->Part = state[2];
+  this->IsRefined = this->Part >= 1.0;
+  this->HasBegun = state[3] != 0.0;
+  // A picture that is there soon would only flicker in the status bar.
+  const bool isLong = Clock::now() - this->Begun > LongTime;
+  if (!this->IsRefined ? isLong : this->IsTold)
+  {
+    this->IsTold = !this->IsRefined;
+    this->View->InvokeEvent(vtkCommand::ProgressEvent, state);
+  }
+}
+
+/// Chooses when the next picture is shown. `added`: part of the samples that the last one added.
+void vtkPVDSMRefinement::PlanNext(double added)
+{
+  const Clock::time_point now = Clock::now();
+  const auto toSeconds = [](Clock::duration time)
+  { return std::chrono::duration<double>(time).count(); };
+  double seconds =
+    std::clamp(WaitingPart * toSeconds(now - this->Begun), LeastSeconds, MostSeconds);
+  if (added > 0.0 && this->LastShow >= this->Begun)
+  {
+    // When it will have all.
+    seconds = std::min(seconds, toSeconds(now - this->LastShow) * (1.0 - this->Part) / added);
+  }
+  this->LastShow = now;
+  this->NextShow =
+    now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// A server traces from now on; a client that traces itself does so when the application has handled its events.
+void vtkPVDSMRefinement::GoOn()
+{
+  const double left = std::chrono::duration<double>(this->NextShow - Clock::now()).count();
+  if (this->IsRemote())
+  {
+    this->Advance(AdvanceSeconds);
+    this->WakeLater(std::clamp(left, ShortDelay, ReminderSeconds));
+  }
+  else
+  {
+    this->WakeLater(ShortDelay);
+  }
+}
+
+bool vtkPVDSMRefinement::IsRemote() const
+{
+  return this->View->GetSession()->IsA("vtkSMSessionClient");
+}
+
+void vtkPVDSMRefinement::Advance(double seconds)
+{
+  if (vtkSMProxy* const report = FindReport(this->View))
+  {
+    Tell(report, "Advance", seconds);
   }
 }
 
@@ -328,7 +384,7 @@ void vtkPVDSMRefinement::OnInteractionEnds()
   // After a movement ParaView renders, when its delay is over.
   if (!this->IsRefined)
   {
-    this->RenderLater(ShortDelay);
+    this->WakeLater(ShortDelay);
   }
 }
 
@@ -348,7 +404,8 @@ void vtkPVDSMRefinement::OnIsovalue()
 {
   if (this->Timer == 0 && this->View)
   {
-    this->RenderLater(ShortDelay);
+    this->NextShow = Clock::now();
+    this->WakeLater(ShortDelay);
   }
 }
 
@@ -361,16 +418,32 @@ void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
   this->Timer = 0; // the interactor destroys it
   if (this->View->GetSession()->GetPendingProgress())
   {
-    this->RenderLater(LongDelay);
+    this->WakeLater(LongDelay);
     return;
   }
-  // Events that the application has not received yet come first.
-  if (this->Input.HasPressed())
+  if (!this->IsRefined && this->IsRemote() && Clock::now() < this->NextShow)
   {
-    this->Input.Begin();
-    this->RenderLater(ShortDelay);
+    this->GoOn();
     return;
   }
+  if (!this->IsRefined && Clock::now() < this->NextShow)
+  {
+    const double before = this->Part;
+    this->Advance(LocalSeconds);
+    this->TakeState();
+    if (!this->IsRefined && Clock::now() < this->NextShow)
+    {
+      this->Part = before; // of the picture that is shown
+      this->GoOn();
+      return;
+    }
+    this->Part = before;
+  }
+  this->Show();
+}
+
+void vtkPVDSMRefinement::Show()
+{
   // A trace of what the user does has no place for these renders.
   vtkSMTrace* trace = vtkSMTrace::GetActiveTracer();
   const bool tracesCameras = trace && trace->GetFullyTraceCameraAdjustments();
@@ -387,12 +460,13 @@ void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
   }
 }
 
-void vtkPVDSMRefinement::RenderLater(unsigned long milliseconds)
+void vtkPVDSMRefinement::WakeLater(double seconds)
 {
   this->Forget();
   if (this->Interactor)
   {
-    this->Timer = this->Interactor->CreateOneShotTimer(milliseconds);
+    this->Timer =
+      this->Interactor->CreateOneShotTimer(static_cast<unsigned long>(1000.0 * seconds));
   }
 }
 

@@ -3,7 +3,6 @@
 #define vtkPVDSMRefinement_h
 
 #include "vtkPVDSMColorWatch.h"
-#include "vtkPVDSMInputWatch.h"
 #include "vtkPVDSMIsovalueWatch.h"
 
 #include "vtkNew.h"
@@ -11,23 +10,24 @@
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
 
+#include <chrono>
 #include <set>
 #include <vector>
 
 class vtkPVDSMProgressGuard;
 class vtkPVRenderView;
-class vtkRenderWindow;
 class vtkRenderWindowInteractor;
 class vtkSMProxy;
 class vtkSMRenderViewProxy;
 
-/// Refines the images of a view while the application is idle: in the ParaView application, a still render
-/// takes few samples of each pixel, and each idle period adds the next samples, until all requested samples
-/// are there. There is one on the client for each view with a traced dataset; its thread is the
-/// application's. If no application handles events between renders (pvpython, pvbatch), or with several
+/// Refines the images of a view while the application is idle: in the ParaView application, a render ends soon,
+/// whatever is missing, and the ranks continue with its picture until it has all requested samples. A server does so
+/// until the client sends it anything. Where the client itself traces, it handles events in between. Now and then
+/// a render shows what has come. There is one on the client for each view with a traced dataset; its thread is
+/// the application's. If no application handles events between renders (pvpython, pvbatch), or with several
 /// clients, renders take all samples at once; but while the user moves the camera, as in a browser, each
-/// takes one. A changed isovalue is shown at once. If the client itself traces, a render ends early when the
-/// user presses anything.
+/// takes one. A changed isovalue is shown at once. While a picture takes long, the view's proxy invokes ProgressEvent
+/// with what vtkPVDSMFrameReport::GetRefinement returns.
 class vtkPVDSMRefinement : public vtkObject
 {
 public:
@@ -53,34 +53,40 @@ private:
 
   void OnRenderBegins(vtkObject* caller, unsigned long event, void* interactive);
   void OnRenderEnds(vtkObject* caller, unsigned long event, void* interactive);
-  void OnAbortCheck(vtkObject* caller, unsigned long event, void* data);
   void OnInteractionBegins();
   void OnInteractionEnds();
   void TellInteracting();
   void OnIsovalue();
   void OnTimer(vtkObject* caller, unsigned long event, void* timer);
-  void RenderLater(unsigned long milliseconds);
+  void TakeState();
+  void PlanNext(double added);
+  bool IsRemote() const;
+  void Advance(double seconds);
+  void GoOn();
+  void Show();
+  void WakeLater(double seconds);
   void Forget();
 
   vtkWeakPointer<vtkSMRenderViewProxy> View;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
-  vtkWeakPointer<vtkRenderWindow> Window;
   vtkNew<vtkPVDSMProgressGuard> ProgressGuard;
-  vtkPVDSMInputWatch Input;
   vtkPVDSMColorWatch Colors;
   vtkPVDSMIsovalueWatch Isovalues{ [this] { this->OnIsovalue(); } };
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;
-  unsigned long WindowObserver = 0;
   std::set<unsigned int> Told; ///< frame reports that know that this client goes on
   bool IsInteracting = false;
   bool IsRefined = true;   ///< the last picture, as far as this client knows
   bool IsRefining = false; ///< in a render of its own
-  bool CanAbort = false;   ///< in a still render, which is to be looked at
-  bool IsAborted = false;  ///< by the user, the last render
-  int Samples = 0;         ///< samples of the last image
-  int Standstill = 0;      ///< renders of its own that added nothing
-  int Timer = 0;           ///< 0: none is set
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point Begun;    ///< when something else was to be shown
+  Clock::time_point LastShow; ///< of a picture on its way to its samples
+  Clock::time_point NextShow;
+  double Part = 0.0;     ///< of the samples, that the last picture had
+  bool IsTold = false;   ///< the application, of a picture on its way
+  bool HasBegun = false; ///< the last render, of another picture
+  int Standstill = 0;    ///< renders of its own that did so, one after the other
+  int Timer = 0;         ///< 0: none is set
 };
 
 #endif

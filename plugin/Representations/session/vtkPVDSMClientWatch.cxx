@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMClientWatch.h"
+
+#include "vtkClientSocket.h"
+#include "vtkCompositeMultiProcessController.h"
+#include "vtkPVSession.h"
+#include "vtkPVSessionServer.h"
+#include "vtkProcessModule.h"
+#include "vtkSocketCommunicator.h"
+
+#include <poll.h>
+
+vtkPVDSMClientWatch::vtkPVDSMClientWatch()
+{
+  auto* module = vtkProcessModule::GetProcessModule();
+  auto* session = module ? vtkPVSessionServer::SafeDownCast(module->GetActiveSession()) : nullptr;
+  auto* clients = session
+    ? vtkCompositeMultiProcessController::SafeDownCast(session->GetController(vtkPVSession::CLIENT))
+    : nullptr;
+  vtkMultiProcessController* client = clients ? clients->GetActiveController() : nullptr;
+  auto* communicator =
+    client ? vtkSocketCommunicator::SafeDownCast(client->GetCommunicator()) : nullptr;
+  if (communicator && communicator->GetSocket())
+  {
+    this->Descriptor = communicator->GetSocket()->GetSocketDescriptor();
+  }
+}
+
+bool vtkPVDSMClientWatch::HasSent() const
+{
+  pollfd connection{ this->Descriptor, POLLIN, 0 };
+  return this->Descriptor >= 0 && poll(&connection, 1, 0) != 0;
+}

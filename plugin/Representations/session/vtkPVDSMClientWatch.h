@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef vtkPVDSMClientWatch_h
+#define vtkPVDSMClientWatch_h
+
+/// Detects, on a server's first process, that its client has sent something which the server has not read yet. One
+/// thread.
+class vtkPVDSMClientWatch
+{
+public:
+  /// Finds the connection to the active client. Without one, nothing is ever detected.
+  vtkPVDSMClientWatch();
+
+  /// Takes a microsecond.
+  bool HasSent() const;
+
+private:
+  int Descriptor = -1; ///< of the connection's socket
+};
+
+#endif
