@@ -162,7 +162,8 @@ class Session:
                     break
                 rays = max(1, display.DSMAmbientOcclusionSamples)
                 display.DSMAmbientOcclusionSamples = max(rays + 1, int(rays * min(8.0, 1.2 * SECONDS / seconds)))
-            say(f"{what}: a whole picture takes {seconds:.1f} s")
+            rays = f", {display.DSMAmbientOcclusionSamples} occlusion rays" if self.traced else ""
+            say(f"{what}: a whole picture takes {seconds:.1f} s{rays}")
             whole = grab(self.view)
             camera = vtkCamera()
             camera.DeepCopy(self.view.SMProxy.GetActiveCamera())

@@ -23,7 +23,7 @@ MOST_RAYS = 1024  # of ambient occlusion, that the display takes
 PATIENCE = 250.0  # seconds for everything
 
 HOLDS = (0.02, 0.08, 0.2, 0.4)  # seconds that the left button of the mouse is held
-CLICKS = 10  # of each
+CLICKS = 4  # of each
 
 # Clicks in the middle of the view, in the middle of frames, and tells when.
 CLICK = """
@@ -159,12 +159,12 @@ class Watch:
         self.redraw = time.monotonic() - start
         yield
         check(self.get_samples() == self.wanted, "nothing changes once all samples are there")
+        yield from self.click_while_tracing()
         if not servermanager.ActiveConnection.IsRemote():
-            yield from self.click_while_tracing()
             yield from self.click_after_tracing()
 
     def click_while_tracing(self):
-        """Where the application itself traces, a press of the mouse ends the frame, however short it is."""
+        """A press of the mouse ends the frame, however short it is, also that of a server."""
         try:
             ctypes.CDLL("libXtst.so.6")
         except OSError:

@@ -39,8 +39,8 @@ constexpr double LocalSeconds = 0.1;
 /// Seconds from one picture to the next, and the part of the time since the first that they are at least: so pictures
 /// cost little of a long frame, and few bytes. After the longest time a server begins to wait for its client.
 constexpr double LeastSeconds = 0.1;
-constexpr double MostSeconds = 1.0;
-constexpr double WaitingPart = 0.3;
+constexpr double MostSeconds = 2.0;
+constexpr double WaitingPart = 0.5;
 /// A server that was asked anything else is told again to go on after so many seconds.
 constexpr double ReminderSeconds = 0.25;
 /// Seconds for which a server traces without its client.
@@ -274,8 +274,8 @@ void vtkPVDSMRefinement::OnRenderEnds(vtkObject*, unsigned long, void* interacti
   const bool goesOn = this->CanGoOn();
   vtkSMSession* const session = this->View->GetSession();
   const bool isStill = *static_cast<int*>(interactive) == 0;
-  // More samples of a picture are of the same data: a server is not asked again.
-  const bool isSame = this->IsRefining && this->Part > 0.0;
+  // Further pictures are of the same data: a server is not asked again.
+  const bool isSame = this->IsRefining && this->LastShow >= this->Begun;
   // With several clients, the master decides what the others show.
   if (isStill && !isSame &&
     (!session->IsMultiClients() || session->GetCollaborationManager()->IsMaster()))
@@ -404,7 +404,8 @@ void vtkPVDSMRefinement::OnIsovalue()
 {
   if (this->Timer == 0 && this->View)
   {
-    this->NextShow = Clock::now();
+    this->Begun = this->NextShow = Clock::now();
+    this->Part = 0.0;
     this->WakeLater(ShortDelay);
   }
 }

@@ -14,7 +14,7 @@ namespace rt
 namespace
 {
 
-constexpr double MovingSeconds = 0.07;
+constexpr double MovingSeconds = 0.05;
 /// A picture that takes longer has a draft before it.
 constexpr double SoonSeconds = 0.2;
 constexpr double DraftSeconds = 0.1;

@@ -4,6 +4,7 @@
 #include "DSMBricks/base/ByteHash.h"
 
 #include <glm/common.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -190,7 +190,7 @@ public:
   ///@{
   /**
    * While the window wants interactive rates, one pixel is traced for a square of pixels, which it fills. The
-   * square has this edge at least, and up to 8 if the frame would take longer than about 0.07 s, by the time of the
+   * square has this edge at least, and up to 16 if the frame would take longer than about 0.05 s, by the time of the
    * last one. 0 (the default): every pixel is traced. Same value on every rank.
    */
   void SetInteractiveReduction(int edge);
