@@ -85,6 +85,8 @@ public:
 
   /// Returns the samples that each pixel has at least; 0 without a frame.
   int GetSamples() const { return this->Samples; }
+  /// Returns the samples that some pixels have; 0 for a first sample that was aborted.
+  int GetMostSamples() const { return this->Samples + this->SamplesUnderWay; }
   int GetWanted() const { return this->Wanted; }
   /// Returns the part of all samples that is there; of a first sample, the part of its tiles.
   double GetPart() const;

@@ -404,17 +404,19 @@ bool vtkDSMScene::TraceImage(int width, int height, vtkImageData* image, bool tr
 bool vtkDSMScene::Advance(std::function<bool()> goesOn)
 {
   Internals& self = *this->Self;
+  // The application's state, the same on every rank; whether the picture is refined is for the ranks to agree on.
   if (!self.Renderer || self.Renderer->GetSelector() || self.Tracing || Internals::TracingTiles ||
-    !self.Prop->GetVisibility() || this->IsRefined())
+    !self.Prop->GetVisibility())
   {
     return false;
   }
   const vtkSmartPointer<vtkDSMScene> tracing = this; // as Trace
+  const bool wasRefined = this->IsRefined();
   self.GoesOn = std::move(goesOn);
   const bool traced = this->TraceFrame();
   this->EndReading();
   self.GoesOn = nullptr;
-  return traced;
+  return traced && !wasRefined;
 }
 
 bool vtkDSMScene::ExtractIsosurfaces(

@@ -494,14 +494,16 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
     return;
   }
   const rt::Frame& frame = this->Accumulation.GetFrame();
+  const bool hasEdges =
+    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetMostSamples() > 1;
   if (result == rt::FrameAccumulation::Result::Aborted)
   {
     // The renderer goes on: other ranks may wait for what this one draws.
     this->Renderer->GetRenderWindow()->SetAbortRender(0);
     if (this->SecondsPerFrame > 0.0 && frame.Number > 0)
     {
-      this->DrawPicture(
-        this->FillGaps(request), request, projection, scene.View, request.PixelSize == 1, false);
+      this->DrawPicture(this->FillGaps(request, hasEdges), request, projection, scene.View,
+        request.PixelSize == 1, hasEdges);
     }
     return;
   }
@@ -510,8 +512,6 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
     this->FillImage(rt::GatherFrame(messenger, frame));
     return;
   }
-  const bool hasEdges =
-    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetSamples() > 1;
   const bool isNew = result == rt::FrameAccumulation::Result::Traced;
   if (!isNew)
   {

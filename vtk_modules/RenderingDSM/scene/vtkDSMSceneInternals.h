@@ -169,7 +169,7 @@ private:
   rt::FrameAccumulation::Result TracePicture(Task& task, Offers& offers);
   void NoteTraced(const Task& task, const Try& done);
   void NoteAborted(const Task& task, const Try& begun);
-  rt::Picture FillGaps(const rt::FrameRequest& request);
+  rt::Picture FillGaps(const rt::FrameRequest& request, bool hasEdges);
   void TellOfTracing(double part) const;
   void DrawPicture(rt::Picture picture, const rt::FrameRequest& request, vtkMatrix4x4* projection,
     rt::DebugView view, bool hasNotes, bool hasEdges);

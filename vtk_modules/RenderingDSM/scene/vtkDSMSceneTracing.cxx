@@ -267,11 +267,11 @@ void vtkDSMScene::Internals::NoteAborted(const Task& task, const Try& begun)
 }
 
 /// Collective. Returns what a frame shows that was aborted: its tiles, and the last picture where there are none.
-rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request)
+rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bool hasEdges)
 {
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto get = [&](const rt::Frame& frame)
-  { return this->Delivery.Gather(messenger, frame, this->Delivery.Assemble(frame), false); };
+  { return this->Delivery.Gather(messenger, frame, this->Delivery.Assemble(frame), hasEdges); };
   const rt::Frame& begun = this->Accumulation.GetBegun();
   rt::Picture picture = get(this->Accumulation.GetFrame());
   if (begun.Number > 0)
