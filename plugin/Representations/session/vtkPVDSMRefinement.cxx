@@ -332,7 +332,11 @@ void vtkPVDSMRefinement::PlanNext(double added)
   { return std::chrono::duration<double>(time).count(); };
   double seconds =
     std::clamp(WaitingPart * toSeconds(now - this->Begun), LeastSeconds, MostSeconds);
-  if (added > 0.0 && this->LastShow >= this->Begun)
+  if (this->LastShow < this->Begun)
+  {
+    seconds = 0.0; // what is quick is whole in the next render
+  }
+  else if (added > 0.0)
   {
     // When it will have all.
     seconds = std::min(seconds, toSeconds(now - this->LastShow) * (1.0 - this->Part) / added);
@@ -346,7 +350,7 @@ void vtkPVDSMRefinement::PlanNext(double added)
 void vtkPVDSMRefinement::GoOn()
 {
   const double left = std::chrono::duration<double>(this->NextShow - Clock::now()).count();
-  if (this->IsRemote())
+  if (this->IsRemote() && left > 0.0)
   {
     this->Advance(AdvanceSeconds);
     this->WakeLater(std::clamp(left, ShortDelay, ReminderSeconds));
