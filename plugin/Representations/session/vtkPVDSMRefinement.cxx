@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
 
-#include "vtkPVDSMDelivery.h"
 #include "vtkPVDSMProgressGuard.h"
 #include "vtkPVDSMProxyFinder.h"
 #include "vtkPVDSMVersionCheck.h"
@@ -46,7 +45,7 @@ constexpr double ReminderSeconds = 0.25;
 /// Seconds for which a server traces without its client.
 constexpr double AdvanceSeconds = 10.0;
 
-/// The status bar tells of pictures that take longer.
+/// The status bar shows the progress of pictures that take longer.
 constexpr std::chrono::seconds LongTime(1);
 
 /// Renders of its own that begin another picture, one after the other: then something other than the user draws the
@@ -403,12 +402,13 @@ void vtkPVDSMRefinement::TellInteracting()
 }
 
 /// The panel's slider sends this event many times while it is dragged; a pending render already
-/// shows the last value.
+/// shows the last value. A timer that only continues with the picture before gives way.
 void vtkPVDSMRefinement::OnIsovalue()
 {
-  if (this->Timer == 0 && this->View)
+  const Clock::time_point now = Clock::now();
+  if (this->View && (this->Timer == 0 || now < this->NextShow))
   {
-    this->Begun = this->NextShow = Clock::now();
+    this->Begun = this->NextShow = now;
     this->Part = 0.0;
     this->WakeLater(ShortDelay);
   }
@@ -426,23 +426,18 @@ void vtkPVDSMRefinement::OnTimer(vtkObject*, unsigned long, void* timer)
     this->WakeLater(LongDelay);
     return;
   }
-  if (!this->IsRefined && this->IsRemote() && Clock::now() < this->NextShow)
+  const auto isEarly = [this] { return !this->IsRefined && Clock::now() < this->NextShow; };
+  if (isEarly() && !this->IsRemote())
+  {
+    const double shown = this->Part;
+    this->Advance(LocalSeconds);
+    this->TakeState();
+    this->Part = shown;
+  }
+  if (isEarly())
   {
     this->GoOn();
     return;
-  }
-  if (!this->IsRefined && Clock::now() < this->NextShow)
-  {
-    const double before = this->Part;
-    this->Advance(LocalSeconds);
-    this->TakeState();
-    if (!this->IsRefined && Clock::now() < this->NextShow)
-    {
-      this->Part = before; // of the picture that is shown
-      this->GoOn();
-      return;
-    }
-    this->Part = before;
   }
   this->Show();
 }
