@@ -315,21 +315,20 @@ void vtkPVDSMDelivery::Choose(vtkDSMScene* scene, vtkView* anyView, vtkInformati
   {
     SelectTheNearest(anyView);
   }
-  const bool takesFew =
-    report && (report->GetInteracting() || (report->GetProgressive() && CanRefine(view)));
+  const bool interacts = report && report->GetInteracting();
+  const bool isProgressive = report && report->GetProgressive();
+  const bool takesFew = interacts || (isProgressive && CanRefine(view));
+  const bool othersFollow = interacts || (isProgressive && !IsCapturing(anyView));
   scene->SetSamplesPerFrame(takesFew ? 1 : 0);
-  scene->SetInteracting(report && report->GetInteracting());
+  scene->SetInteracting(interacts);
   scene->SetShowsDrafts(report != nullptr);
-  const bool othersFollow =
-    report && (report->GetInteracting() || (report->GetProgressive() && !IsCapturing(anyView)));
   scene->SetSecondsPerFrame(othersFollow ? seconds : 0.0);
   // While the user interacts, a picture may be as coarse as its time demands. ParaView's level of detail sets how
   // coarse it is at least.
-  const bool usesLevels =
-    view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !AskedView::IsCapturing(view);
+  const bool usesLevels = view && inInfo->Has(vtkPVRenderView::USE_LOD()) && !IsCapturing(anyView);
   scene->SetInteractiveReduction(
     usesLevels ? GetReduction(view->GetLODResolution()) : (takesFew ? 1 : 0));
-  scene->SetAlwaysFinest(!(report && report->GetInteracting()) && IsCapturing(anyView));
+  scene->SetAlwaysFinest(!interacts && IsCapturing(anyView));
   if (!view || !controller || controller->GetNumberOfProcesses() < 2)
   {
     scene->DeliverTiles();

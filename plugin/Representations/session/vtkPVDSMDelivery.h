@@ -48,15 +48,14 @@ public:
   /// For REQUEST_RENDER: whether the view is going to draw for a selection, until the next request.
   static bool IsSelecting(vtkView* view);
 
-  /// Returns whether the view renders an image that is kept, such as a screenshot.
-  static bool IsCapturing(vtkView* view);
-
   /// For REQUEST_RENDER: chooses the way that suits the view's other contents, and the purpose of the render.
   /// `report` knows the state of the client; may be null. `seconds`: that a render may take if others are to follow.
   static void Choose(vtkDSMScene* scene, vtkView* view, vtkInformation* inInfo,
     vtkPVDSMFrameReport* report, double seconds);
 
 private:
+  /// Returns whether the view renders an image that is kept, such as a screenshot.
+  static bool IsCapturing(vtkView* view);
   static void SelectTheNearest(vtkView* view);
 };
 

@@ -41,9 +41,7 @@ float GetDepth(const glm::dmat4& worldToClip, const glm::dvec3& place)
 /// A square of `half` pixels around the middle, at the depth of the origin; red on its left.
 rt::Picture DrawSquare(const glm::dmat4& worldToClip, int half)
 {
-  rt::Picture picture;
-  picture.Width = picture.Height = Size;
-  picture.Reset({}, Size * Size);
+  rt::Picture picture = rt::Picture::Create(Size, Size);
   for (int y = Size / 2 - half; y < Size / 2 + half; ++y)
   {
     for (int x = Size / 2 - half; x < Size / 2 + half; ++x)
@@ -91,7 +89,7 @@ TEST(Stopgap, MovesSurfacesByTheirDepth)
     const double scale = static_cast<double>(size) / Size;
     EXPECT_NEAR(CountCovered(moved), scale * scale * CountCovered(picture),
       0.12 * scale * scale * CountCovered(picture));
-    // The origin is in the middle of both pictures, and there is no gap around it.
+    // Both pictures have the origin in the middle, without a gap around it.
     for (int y = size / 2 - size / 8; y < size / 2 + size / 8; ++y)
     {
       for (int x = size / 2 - size / 8; x < size / 2 + size / 8; ++x)
@@ -123,9 +121,7 @@ TEST(Stopgap, GivesWayToTilesOnEveryRank)
   frame.Width = frame.Height = Size;
   frame.TileSize = 16;
   frame.Left = { 0, 5, 6 };
-  rt::Picture traced; // another rank has the tiles
-  traced.Width = traced.Height = Size;
-  traced.Reset({}, Size * Size);
+  const rt::Picture traced = rt::Picture::Create(Size, Size); // another rank has the tiles
   rt::Picture stopgap = DrawSquare(Look(0.0), 32);
   rt::Stopgap::Cover(frame, traced, stopgap);
   EXPECT_EQ(CountCovered(stopgap), 3 * 16 * 16);

@@ -196,14 +196,20 @@ void UnpackEdges(const std::vector<std::byte>& bytes, Picture& picture)
 
 Picture CreatePicture(const Frame& frame)
 {
-  Picture picture;
-  picture.Width = frame.Width;
-  picture.Height = frame.Height;
-  picture.Reset(frame.Channels, static_cast<std::size_t>(frame.Width) * frame.Height);
-  return picture;
+  return Picture::Create(frame.Width, frame.Height, 1, frame.Channels);
 }
 
 } // namespace
+
+Picture Picture::Create(int width, int height, int layers, ChannelSet channels)
+{
+  Picture picture;
+  picture.Width = width;
+  picture.Height = height;
+  picture.Layers = layers;
+  picture.Reset(channels, static_cast<std::size_t>(width) * height * layers);
+  return picture;
+}
 
 Picture AssembleTiles(const Frame& frame)
 {

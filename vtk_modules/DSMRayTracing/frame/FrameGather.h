@@ -17,6 +17,9 @@ struct Picture : Channels
   int Width = 0;
   int Height = 0;
   int Layers = 1; ///< as many as show anything, and one at least
+
+  /// Nothing is shown in it.
+  static Picture Create(int width, int height, int layers = 1, ChannelSet channels = {});
 };
 
 /// Local: this rank's tiles; the rest is transparent and infinitely far away.

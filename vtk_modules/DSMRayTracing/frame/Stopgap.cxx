@@ -23,16 +23,6 @@ constexpr int NeighborsOfGap = 5;
 /// How often gaps are closed: the first time leaves the middle of wide ones.
 constexpr int Closings = 2;
 
-Picture CreatePicture(const FrameRequest& request, int layers)
-{
-  Picture picture;
-  picture.Width = request.Width;
-  picture.Height = request.Height;
-  picture.Layers = layers;
-  picture.Reset({}, static_cast<std::size_t>(request.Width) * request.Height * layers);
-  return picture;
-}
-
 void Copy(const Picture& from, std::size_t source, Picture& to, std::size_t target)
 {
   std::copy_n(&from.Color[4 * source], 4, &to.Color[4 * target]);
@@ -42,7 +32,7 @@ void Copy(const Picture& from, std::size_t source, Picture& to, std::size_t targ
 /// For the same camera.
 Picture Resize(const Picture& earlier, const FrameRequest& request)
 {
-  Picture picture = CreatePicture(request, earlier.Layers);
+  Picture picture = Picture::Create(request.Width, request.Height, earlier.Layers);
   for (int row = 0; row < picture.Layers * picture.Height; ++row)
   {
     const int layer = row / picture.Height;
@@ -163,13 +153,13 @@ Picture Stopgap::Move(const Picture& earlier, const glm::dmat4& from, const Fram
 {
   if (earlier.Width < 1 || earlier.Height < 1)
   {
-    return CreatePicture(request, 1);
+    return Picture::Create(request.Width, request.Height);
   }
   if (from == request.WorldToClip)
   {
     return Resize(earlier, request);
   }
-  Picture picture = CreatePicture(request, earlier.Layers);
+  Picture picture = Picture::Create(request.Width, request.Height, earlier.Layers);
   const glm::dmat4 change = request.WorldToClip * glm::inverse(from);
   const glm::dvec4 there = from * glm::dvec4(middle, 1.0);
   const double depth = there.w > 0.0 ? 0.5 * (there.z / there.w + 1.0) : 1.0;
@@ -186,8 +176,7 @@ void Stopgap::Cover(const Frame& frame, const Picture& traced, Picture& stopgap)
   const std::size_t pixels = static_cast<std::size_t>(frame.Width) * frame.Height;
   stopgap.Layers = std::max(stopgap.Layers, traced.Layers);
   stopgap.Resize(pixels * stopgap.Layers);
-  Picture empty;
-  empty.Reset({}, 1);
+  const Picture empty = Picture::Create(1, 1);
   for (int index = 0; index < grid.GetCount(); ++index)
   {
     if (std::binary_search(frame.Left.begin(), frame.Left.end(), index))

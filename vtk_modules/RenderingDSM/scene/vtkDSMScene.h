@@ -181,7 +181,7 @@ public:
    * interactive rates. Tiles that are not ready show the last picture, moved as the camera has. A render, or Advance,
    * continues with them. If there is time left, a still picture gets more samples than SamplesPerFrame. A first
    * picture, and one of data that take the place of others, such as time steps, takes the time that it needs. 0 (the
-   * default): there is no limit. Same value on every rank.
+   * default): no limit. Same value on every rank.
    */
   void SetSecondsPerFrame(double seconds);
   double GetSecondsPerFrame() const;

@@ -164,6 +164,7 @@ private:
   };
   std::vector<Try> GetTries(const Task& task) const;
   rt::FrameAccumulation::Result TraceScene(Task task, Offers offers);
+  bool IsDraft(const Try& picture) const;
   bool IsLimited(const Task& task) const;
   bool IsUnderWay(const Task& task) const;
   rt::FrameAccumulation::Result TracePicture(Task& task, Offers& offers);

@@ -18,7 +18,7 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// When a frame that takes long tells how far it is, first and then again.
+/// Times after which a long frame reports its progress, first and then again.
 constexpr std::chrono::milliseconds FirstTold(1500);
 constexpr std::chrono::milliseconds ThenTold(500);
 
@@ -59,6 +59,12 @@ bool vtkDSMScene::Internals::IsUnderWay(const Task& task) const
 {
   return this->HasAdvanced && this->IsLimited(task) && this->DrawsDrafts() &&
     !this->Accumulation.IsComplete();
+}
+
+/// Returns whether a finer picture is to replace that one.
+bool vtkDSMScene::Internals::IsDraft(const Try& picture) const
+{
+  return this->DrawsDrafts() && picture.Picture.Edge > 1;
 }
 
 /// Pictures to try, up to the first that is not abandoned.
@@ -135,10 +141,10 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   const int wanted = this->Light->GetSamplesPerPixel();
   const rt::FrameAccumulation::Pace pace = this->GetPace();
-  const bool assembles = !this->Image && !this->GoesOn;
+  const bool draws = !this->Image && !this->GoesOn;
   const auto report = [&](const rt::Frame& frame)
   {
-    task.Picture = assembles ? this->Delivery.Assemble(frame) : rt::Picture();
+    task.Picture = draws && !frame.IsAborted ? this->Delivery.Assemble(frame) : rt::Picture();
     return vtkDSMStatistics::CreateReport(store, frame, messenger.GetRank(), messenger.GetSize());
   };
   auto told = Clock::now() + FirstTold;
@@ -148,7 +154,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
   for (auto next = tries.begin(); next != tries.end() && result == Result::Aborted; ++next)
   {
     const int edge = next->Picture.Edge;
-    const bool isDraft = this->DrawsDrafts() && edge > 1;
+    const bool isDraft = this->IsDraft(*next);
     if (next == tries.begin() || edge != (next - 1)->Picture.Edge)
     {
       messenger.Insist([&] { task.Request = rt::Resolution::Reduce(task.Whole, edge); });
@@ -216,12 +222,11 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
 /// All tiles of a picture were traced.
 void vtkDSMScene::Internals::NoteTraced(const Task& task, const Try& done)
 {
-  const bool isDraft = this->DrawsDrafts() && done.Picture.Edge > 1;
   this->Group->GetMessenger().Insist(
     [&]
     {
       this->Statistics->Take(this->Accumulation.GetFrame(),
-        isDraft ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
+        this->IsDraft(done) ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
         done.Coarser);
     });
   if (!this->DrawsDrafts() && (done.Coarser > 0 || task.Coarser > 0))
@@ -232,7 +237,7 @@ void vtkDSMScene::Internals::NoteTraced(const Task& task, const Try& done)
   this->LastWorldToClip = task.Request.WorldToClip;
 }
 
-/// A picture lacks tiles or samples. The statistics tell of one that is traced between frames how far it is.
+/// A picture lacks tiles or samples. Between frames, the statistics show how far it is.
 void vtkDSMScene::Internals::NoteAborted(const Task& task, const Try& begun)
 {
   const bool hasBegun = this->Accumulation.GetBegun().Number > 0;
@@ -258,11 +263,8 @@ void vtkDSMScene::Internals::NoteAborted(const Task& task, const Try& begun)
     double& seconds = this->Shown.SecondsPerPixel;
     const double pixels = this->Accumulation.CountBegunPixels();
     const double whole = static_cast<double>(task.Request.Width) * task.Request.Height;
-    seconds = std::max(Surprise * seconds, begun.Picture.Seconds / whole);
-    if (pixels > 0.0)
-    {
-      seconds = begun.Picture.Seconds / pixels;
-    }
+    seconds = pixels > 0.0 ? begun.Picture.Seconds / pixels
+                           : std::max(Surprise * seconds, begun.Picture.Seconds / whole);
   }
 }
 
