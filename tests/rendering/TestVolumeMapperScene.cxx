@@ -206,6 +206,7 @@ TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
     EXPECT_TRUE(this->Scene->Advance([&] { return ++looks % 3 != 0; }));
     EXPECT_GE(this->Scene->GetRefinedPart(), part);
     part = this->Scene->GetRefinedPart();
+    EXPECT_EQ(part == 1.0, this->Scene->IsRefined());
     ++advances;
     if (advances % 7 == 0)
     {

@@ -11,6 +11,12 @@
 namespace rt
 {
 
+namespace
+{
+/// Part of a frame that is not complete: at most.
+constexpr double AlmostAll = 0.999;
+}
+
 FrameAccumulation::Offer FrameAccumulation::CreateOffer(dsm::BlockStore& store, const Scene& scene,
   const FrameRequest& request, int wanted, const Pace& pace) const
 {
@@ -187,7 +193,10 @@ double FrameAccumulation::GetPart() const
   const double pixels = static_cast<double>(this->Begun.Width) * this->Begun.Height;
   const double begun =
     this->Begun.Number > 0 ? this->BegunSamples * this->CountBegunPixels() / pixels : 0.0;
-  return this->IsComplete() ? 1.0 : (this->Samples + begun) / std::max(this->Wanted, 1);
+  // A frame may be aborted when its last tile has just been traced.
+  return this->IsComplete()
+    ? 1.0
+    : std::min((this->Samples + begun) / std::max(this->Wanted, 1), AlmostAll);
 }
 
 void FrameAccumulation::Clear()
