@@ -83,13 +83,11 @@ class Session:
         self.renders.append((self.started, time.monotonic(), self.interacting))
 
     def is_whole(self, display):
-        if not self.traced:
+        samples = display.SMProxy.GetProperty("DSMSamples") if self.traced else None
+        if not samples:
             return True
-        if not hasattr(display, "DSMSamples"):
-            return True
-        display.SMProxy.UpdatePropertyInformation()
-        have, wanted = display.GetPropertyValue("DSMSamples")
-        return have >= wanted
+        samples.GetParent().UpdatePropertyInformation(samples)
+        return samples.GetElement(0) >= samples.GetElement(1)
 
     def wait(self, display):
         """Until the picture is whole, without asking for it too often."""

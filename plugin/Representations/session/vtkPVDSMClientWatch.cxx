@@ -10,13 +10,21 @@
 
 #include <poll.h>
 
-vtkPVDSMClientWatch::vtkPVDSMClientWatch()
+namespace
+{
+vtkCompositeMultiProcessController* FindClients()
 {
   auto* module = vtkProcessModule::GetProcessModule();
   auto* session = module ? vtkPVSessionServer::SafeDownCast(module->GetActiveSession()) : nullptr;
-  auto* clients = session
+  return session
     ? vtkCompositeMultiProcessController::SafeDownCast(session->GetController(vtkPVSession::CLIENT))
     : nullptr;
+}
+} // namespace
+
+vtkPVDSMClientWatch::vtkPVDSMClientWatch()
+{
+  auto* clients = FindClients();
   vtkMultiProcessController* client = clients ? clients->GetActiveController() : nullptr;
   auto* communicator =
     client ? vtkSocketCommunicator::SafeDownCast(client->GetCommunicator()) : nullptr;
@@ -30,4 +38,10 @@ bool vtkPVDSMClientWatch::HasSent() const
 {
   pollfd connection{ this->Descriptor, POLLIN, 0 };
   return this->Descriptor >= 0 && poll(&connection, 1, 0) != 0;
+}
+
+int vtkPVDSMClientWatch::CountClients()
+{
+  auto* clients = FindClients();
+  return clients ? clients->GetNumberOfControllers() : 0;
 }

@@ -13,6 +13,9 @@ public:
   /// Takes a microsecond.
   bool HasSent() const;
 
+  /// Returns the number of clients that are connected to this process: 0 on a client.
+  static int CountClients();
+
 private:
   int Descriptor = -1; ///< of the connection's socket
 };

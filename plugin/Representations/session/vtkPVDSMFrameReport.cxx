@@ -5,6 +5,7 @@
 #include "vtkDSMStatistics.h"
 #include "vtkDSMVolumeMapper.h"
 #include "vtkPVDSMClientWatch.h"
+#include "vtkPVDSMImageCompressor.h"
 
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
@@ -131,6 +132,14 @@ void vtkPVDSMFrameReport::SetInteracting(bool interacting)
 bool vtkPVDSMFrameReport::GetInteracting()
 {
   return this->Interacting;
+}
+
+void vtkPVDSMFrameReport::CompressPictures(bool compress)
+{
+  if (compress)
+  {
+    vtkPVDSMImageCompressor::Use(this->View);
+  }
 }
 
 void vtkPVDSMFrameReport::PrintSelf(ostream& os, vtkIndent indent)

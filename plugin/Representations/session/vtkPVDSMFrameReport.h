@@ -105,6 +105,12 @@ public:
   bool GetInteracting();
   ///@}
 
+  /**
+   * Local: the view's pictures get to the client, which is prepared for it, in fewer bytes. Without effect in a process
+   * that sends none.
+   */
+  void CompressPictures(bool compress);
+
 protected:
   vtkPVDSMFrameReport();
   ~vtkPVDSMFrameReport() override;

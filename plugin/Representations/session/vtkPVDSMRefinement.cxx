@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPVDSMRefinement.h"
 
+#include "vtkPVDSMImageCompressor.h"
 #include "vtkPVDSMProgressGuard.h"
 #include "vtkPVDSMProxyFinder.h"
 #include "vtkPVDSMVersionCheck.h"
@@ -248,6 +249,7 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
 {
   this->Forget();
   this->FollowInteractor();
+  this->CompressPictures();
   if (!this->CanGoOn())
   {
     return;
@@ -263,6 +265,26 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
       if (this->Told.insert(report->GetGlobalID()).second)
       {
         Tell(report, "SetProgressive", 1);
+      }
+    });
+}
+
+/// A client that can take them asks its server for pictures in fewer bytes.
+void vtkPVDSMRefinement::CompressPictures()
+{
+  if (!this->IsRemote() || this->View->GetSession()->IsMultiClients() ||
+    !vtkPVDSMImageCompressor::IsAvailable())
+  {
+    return;
+  }
+  ForEachReport(this->View,
+    [this](vtkSMProxy* report)
+    {
+      if (this->Compressed.insert(report->GetGlobalID()).second)
+      {
+        vtkPVDSMImageCompressor::Use(
+          vtkPVRenderView::SafeDownCast(this->View->GetClientSideObject()));
+        Tell(report, "CompressPictures", 1);
       }
     });
 }

@@ -51,6 +51,7 @@ private:
   void LeaveInteractor();
   bool CanGoOn() const;
 
+  void CompressPictures();
   void OnRenderBegins(vtkObject* caller, unsigned long event, void* interactive);
   void OnRenderEnds(vtkObject* caller, unsigned long event, void* interactive);
   void OnInteractionBegins();
@@ -74,7 +75,8 @@ private:
   vtkPVDSMIsovalueWatch Isovalues{ [this] { this->OnIsovalue(); } };
   std::vector<unsigned long> ViewObservers;
   std::vector<unsigned long> InteractorObservers;
-  std::set<unsigned int> Told; ///< frame reports that know that this client goes on
+  std::set<unsigned int> Told;       ///< frame reports that know that this client goes on
+  std::set<unsigned int> Compressed; ///< and that it can take compressed pictures
   bool IsInteracting = false;
   bool IsRefined = true;   ///< the last picture, as far as this client knows
   bool IsRefining = false; ///< in a render of its own
