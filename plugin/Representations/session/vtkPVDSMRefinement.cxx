@@ -37,10 +37,12 @@ constexpr double LongDelay = 0.1;
 /// Seconds for which a client that traces itself hears nothing of the user.
 constexpr double LocalSeconds = 0.1;
 /// Seconds from one picture to the next, and the part of the time since the first that they are at least: so pictures
-/// cost little of a long frame, and few bytes. After the longest time a server begins to wait for its client.
+/// cost little of a long frame, and few bytes. After the longest time a server begins to wait for its client. And how
+/// many times as long as the render of a picture they are at least, since no render hears of the mouse.
 constexpr double LeastSeconds = 0.1;
 constexpr double MostSeconds = 2.0;
 constexpr double WaitingPart = 0.5;
+constexpr double RenderTimes = 2.0;
 /// A server that was asked anything else is told again to go on after so many seconds.
 constexpr double ReminderSeconds = 0.25;
 /// Seconds for which a server traces without its client.
@@ -248,6 +250,7 @@ bool vtkPVDSMRefinement::CanGoOn() const
 void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
 {
   this->Forget();
+  this->RenderBegan = Clock::now();
   this->FollowInteractor();
   this->CompressPictures();
   if (!this->CanGoOn())
@@ -256,7 +259,7 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
   }
   if (!this->IsRefining)
   {
-    this->Begun = Clock::now(); // most probably, this render follows what the user did
+    this->Begun = this->RenderBegan; // most probably, this render follows what the user did
     this->Part = 0.0;
   }
   ForEachReport(this->View,
@@ -351,8 +354,9 @@ void vtkPVDSMRefinement::PlanNext(double added)
   const Clock::time_point now = Clock::now();
   const auto toSeconds = [](Clock::duration time)
   { return std::chrono::duration<double>(time).count(); };
-  double seconds =
-    std::clamp(WaitingPart * toSeconds(now - this->Begun), LeastSeconds, MostSeconds);
+  double seconds = std::clamp(std::max(WaitingPart * toSeconds(now - this->Begun),
+                                RenderTimes * toSeconds(now - this->RenderBegan)),
+    LeastSeconds, MostSeconds);
   if (this->LastShow < this->Begun)
   {
     seconds = 0.0; // what is quick is whole in the next render

@@ -81,8 +81,9 @@ private:
   bool IsRefined = true;   ///< the last picture, as far as this client knows
   bool IsRefining = false; ///< in a render of its own
   using Clock = std::chrono::steady_clock;
-  Clock::time_point Begun;    ///< when something else was to be shown
-  Clock::time_point LastShow; ///< of a picture on its way to its samples
+  Clock::time_point RenderBegan; ///< the last one
+  Clock::time_point Begun;       ///< when something else was to be shown
+  Clock::time_point LastShow;    ///< of a picture on its way to its samples
   Clock::time_point NextShow;
   double Part = 0.0;     ///< of the samples, that the last picture had
   bool IsTold = false;   ///< the application, of a picture on its way
