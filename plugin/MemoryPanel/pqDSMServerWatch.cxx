@@ -2,12 +2,30 @@
 #include "pqDSMServerWatch.h"
 
 #include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqProgressManager.h"
+#include "pqSaveStateReaction.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqSettings.h"
+#include "pqView.h"
+#include "vtkClientSocket.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNetworkAccessManager.h"
 #include "vtkPVPluginsInformation.h"
+#include "vtkProcessModule.h"
 #include "vtkSMPluginManager.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSession.h"
+#include "vtkSocketCommunicator.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QMessageBox>
+#include <QPixmap>
+#include <QWidget>
+
+#include <poll.h>
 
 #include <cstring>
 #include <string>
@@ -16,6 +34,12 @@ namespace
 {
 
 constexpr const char* Plugin = "DSMRayTracer";
+
+/// Milliseconds from one look at the connection to the next.
+constexpr int LookInterval = 500;
+
+/// Priority of an observer that is before all others.
+constexpr float FirstOfAll = 100.0f;
 
 bool IsLoaded(vtkPVPluginsInformation* plugins)
 {
@@ -27,6 +51,33 @@ bool IsLoaded(vtkPVPluginsInformation* plugins)
     }
   }
   return false;
+}
+
+/// Returns whether a server has sent what nobody has asked for, or has closed its connection.
+bool HasSent(vtkSMSession* session)
+{
+  vtkMultiProcessController* const server = session->GetController(vtkPVSession::DATA_SERVER_ROOT);
+  auto* const communicator =
+    server ? vtkSocketCommunicator::SafeDownCast(server->GetCommunicator()) : nullptr;
+  if (!communicator || !communicator->GetSocket())
+  {
+    return false;
+  }
+  pollfd connection{ communicator->GetSocket()->GetSocketDescriptor(), POLLIN, 0 };
+  return poll(&connection, 1, 0) > 0;
+}
+
+/// Saves the pictures that all views show, with names that begin so.
+void SavePictures(const QString& name)
+{
+  int number = 0;
+  for (pqView* view : pqApplicationCore::instance()->getServerManagerModel()->findItems<pqView*>())
+  {
+    if (QWidget* const shown = view->widget())
+    {
+      shown->grab().save(name + "-" + QString::number(++number) + ".png");
+    }
+  }
 }
 
 } // namespace
@@ -41,12 +92,20 @@ pqDSMServerWatch::~pqDSMServerWatch() = default;
 void pqDSMServerWatch::OnStartup()
 {
   // Before ParaView looks for what the server lacks, which it does when the server has been added.
-  QObject::connect(pqApplicationCore::instance()->getServerManagerModel(),
-    &pqServerManagerModel::serverReady, this, &pqDSMServerWatch::OnServerReady);
+  pqServerManagerModel* const model = pqApplicationCore::instance()->getServerManagerModel();
+  QObject::connect(
+    model, &pqServerManagerModel::serverReady, this, &pqDSMServerWatch::OnServerReady);
+  QObject::connect(&this->Timer, &QTimer::timeout, this, &pqDSMServerWatch::LookForEnd);
+  // The one of --server-url may be there already.
+  for (pqServer* server : model->findItems<pqServer*>())
+  {
+    this->OnServerReady(server);
+  }
 }
 
 void pqDSMServerWatch::OnShutdown()
 {
+  this->Timer.stop();
   QObject::disconnect(
     pqApplicationCore::instance()->getServerManagerModel(), nullptr, this, nullptr);
 }
@@ -55,6 +114,14 @@ void pqDSMServerWatch::OnServerReady(pqServer* server)
 {
   vtkSMPluginManager* const plugins = vtkSMProxyManager::GetProxyManager()->GetPluginManager();
   vtkSMSession* const session = server && server->isRemote() ? server->session() : nullptr;
+  if (session)
+  {
+    this->Session = session;
+    this->Timer.start(LookInterval);
+    // Before ParaView ends the application because of it.
+    session->AddObserver(
+      vtkPVSessionBase::ConnectionLost, this, &pqDSMServerWatch::OnServerLost, FirstOfAll);
+  }
   if (!session || IsLoaded(plugins->GetRemoteInformation(session)))
   {
     return;
@@ -62,4 +129,46 @@ void pqDSMServerWatch::OnServerReady(pqServer* server)
   const std::string wish =
     std::string("<Plugins><Plugin name=\"") + Plugin + "\" auto_load=\"1\"/></Plugins>";
   plugins->LoadPluginConfigurationXMLFromString(wish.c_str(), session, true);
+}
+
+/// ParaView itself hears of a server's end when it asks for something.
+void pqDSMServerWatch::LookForEnd()
+{
+  vtkSMSession* const session = this->Session;
+  if (session && !session->IsMultiClients() && !session->GetPendingProgress() && HasSent(session))
+  {
+    vtkProcessModule::GetProcessModule()->GetNetworkAccessManager()->ProcessEvents(1);
+  }
+}
+
+void pqDSMServerWatch::OnServerLost()
+{
+  if (!this->Session)
+  {
+    return; // it was lost before
+  }
+  this->Session = nullptr;
+  this->Timer.stop();
+  const QString name =
+    QDir(pqCoreUtilities::getParaViewUserDirectory())
+      .filePath("server-lost-" + QDateTime::currentDateTime().toString("yyyy-MM-dd-hh-mm-ss"));
+  SavePictures(name);
+  const QString state = name + ".pvsm";
+  const QString text = pqSaveStateReaction::saveState(state)
+    ? "The server has ended. Output Messages tells why, as far as the server could tell.\n\n"
+      "DSM Ray Tracer saved the state in " +
+      state +
+      " and a picture of each view beside it. Start ParaView and a server again, connect, and "
+      "choose "
+      "the state in File > Recent Files."
+    : "The server has ended, and its state could not be saved in " + state + ".";
+  pqApplicationCore::instance()->settings()->sync(); // ParaView does not when it ends now
+  qCritical("%s", text.toUtf8().constData());
+  if (qEnvironmentVariableIsEmpty("DASHBOARD_TEST_FROM_CTEST"))
+  {
+    pqProgressManager* const progress = pqApplicationCore::instance()->getProgressManager();
+    const bool before = progress->unblockEvents(true);
+    QMessageBox::critical(pqCoreUtilities::mainWidget(), "DSM Ray Tracer", text);
+    progress->unblockEvents(before);
+  }
 }

@@ -20,18 +20,22 @@ vtkCompositeMultiProcessController* FindClients()
     ? vtkCompositeMultiProcessController::SafeDownCast(session->GetController(vtkPVSession::CLIENT))
     : nullptr;
 }
+
+/// Returns the socket of a connection; negative if there is none.
+int GetSocket(vtkMultiProcessController* client)
+{
+  auto* communicator =
+    client ? vtkSocketCommunicator::SafeDownCast(client->GetCommunicator()) : nullptr;
+  return communicator && communicator->GetSocket()
+    ? communicator->GetSocket()->GetSocketDescriptor()
+    : -1;
+}
 } // namespace
 
 vtkPVDSMClientWatch::vtkPVDSMClientWatch()
 {
   auto* clients = FindClients();
-  vtkMultiProcessController* client = clients ? clients->GetActiveController() : nullptr;
-  auto* communicator =
-    client ? vtkSocketCommunicator::SafeDownCast(client->GetCommunicator()) : nullptr;
-  if (communicator && communicator->GetSocket())
-  {
-    this->Descriptor = communicator->GetSocket()->GetSocketDescriptor();
-  }
+  this->Descriptor = GetSocket(clients ? clients->GetActiveController() : nullptr);
 }
 
 bool vtkPVDSMClientWatch::HasSent() const
@@ -44,4 +48,15 @@ int vtkPVDSMClientWatch::CountClients()
 {
   auto* clients = FindClients();
   return clients ? clients->GetNumberOfControllers() : 0;
+}
+
+std::vector<int> vtkPVDSMClientWatch::ListConnections()
+{
+  std::vector<int> sockets;
+  auto* clients = FindClients();
+  for (int number = 0; number < CountClients(); ++number)
+  {
+    sockets.push_back(GetSocket(clients->GetController(number)));
+  }
+  return sockets;
 }

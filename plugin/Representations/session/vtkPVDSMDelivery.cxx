@@ -4,6 +4,7 @@
 #include "vtkDSMScene.h"
 #include "vtkPVDSMDrawing.h"
 #include "vtkPVDSMFrameReport.h"
+#include "vtkPVDSMRankWatch.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCompositeRepresentation.h"
@@ -222,6 +223,7 @@ vtkSmartPointer<vtkDSMScene> vtkPVDSMDelivery::FindScene(
   {
     return nullptr;
   }
+  vtkPVDSMRankWatch::Start();
   const std::string obstacle = FindObstacle();
   if (!obstacle.empty())
   {
