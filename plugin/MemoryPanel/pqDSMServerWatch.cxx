@@ -3,7 +3,6 @@
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
-#include "pqProgressManager.h"
 #include "pqSaveStateReaction.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
@@ -12,6 +11,7 @@
 #include "vtkClientSocket.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNetworkAccessManager.h"
+#include "vtkOutputWindow.h"
 #include "vtkPVPluginsInformation.h"
 #include "vtkProcessModule.h"
 #include "vtkSMPluginManager.h"
@@ -21,7 +21,6 @@
 
 #include <QDateTime>
 #include <QDir>
-#include <QMessageBox>
 #include <QPixmap>
 #include <QWidget>
 
@@ -154,21 +153,14 @@ void pqDSMServerWatch::OnServerLost()
       .filePath("server-lost-" + QDateTime::currentDateTime().toString("yyyy-MM-dd-hh-mm-ss"));
   SavePictures(name);
   const QString state = name + ".pvsm";
-  const QString text = pqSaveStateReaction::saveState(state)
-    ? "The server has ended. Output Messages tells why, as far as the server could tell.\n\n"
-      "DSM Ray Tracer saved the state in " +
-      state +
-      " and a picture of each view beside it. Start ParaView and a server again, connect, and "
-      "choose "
-      "the state in File > Recent Files."
-    : "The server has ended, and its state could not be saved in " + state + ".";
+  const bool isSaved = pqSaveStateReaction::saveState(state);
   pqApplicationCore::instance()->settings()->sync(); // ParaView does not when it ends now
-  qCritical("%s", text.toUtf8().constData());
-  if (qEnvironmentVariableIsEmpty("DASHBOARD_TEST_FROM_CTEST"))
-  {
-    pqProgressManager* const progress = pqApplicationCore::instance()->getProgressManager();
-    const bool before = progress->unblockEvents(true);
-    QMessageBox::critical(pqCoreUtilities::mainWidget(), "DSM Ray Tracer", text);
-    progress->unblockEvents(before);
-  }
+  // ParaView shows it beside its question whether to save the state.
+  vtkOutputWindowDisplayWarningText(
+    (isSaved ? "DSM Ray Tracer saved the state of the lost server in " + state +
+          ", and a picture of each view beside it. Start ParaView and a server again, connect, and "
+          "choose this state in File > Recent Files."
+             : "DSM Ray Tracer cannot save the state of the lost server in " + state + ".")
+      .toUtf8()
+      .constData());
 }

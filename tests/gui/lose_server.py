@@ -14,7 +14,7 @@ SECONDS = 90
 
 
 def run(**variables):
-    # As in ParaView's own tests: no dialog waits for an answer.
+    # As in ParaView's own tests: its dialog does not wait for an answer.
     environment = {**os.environ, "XDG_CONFIG_HOME": FOLDER, "DASHBOARD_TEST_FROM_CTEST": "1", **variables}
     done = subprocess.run(COMMAND, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           timeout=SECONDS)
