@@ -183,6 +183,45 @@ TEST_F(VolumeMapper, ShowsADraftOfWhatIsNew)
   EXPECT_EQ(this->RenderDistances(), whole);
 }
 
+TEST_F(VolumeMapper, RefinesThePicturesOfBothEyes)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(2);
+  this->Window->SetStereoTypeToRedBlue();
+  this->Window->StereoRenderOn();
+  const auto whole = this->Draw(this->Mapper);
+  bool isRedOnly = false;
+  for (vtkIdType pixel = 0; pixel < whole->GetNumberOfTuples(); ++pixel)
+  {
+    isRedOnly = isRedOnly ||
+      (whole->GetTypedComponent(pixel, 0) > 0 && whole->GetTypedComponent(pixel, 2) == 0);
+  }
+  EXPECT_TRUE(isRedOnly) << "the eyes see different pictures";
+  this->Scene->SetSamplesPerFrame(1);
+  constexpr double fewSeconds = 1e-6;
+  this->Scene->SetSecondsPerFrame(fewSeconds);
+  for (const double angle : { 4.0, -4.0 })
+  {
+    this->Renderer->GetActiveCamera()->Azimuth(angle);
+    this->Window->Render();
+  }
+  EXPECT_FALSE(this->Scene->IsRefined());
+  int advances = 0;
+  int looks = 0;
+  while (!this->Scene->IsRefined() && advances < 1000)
+  {
+    EXPECT_TRUE(this->Scene->Advance([&] { return ++looks % 7 != 0; }));
+    ++advances;
+  }
+  EXPECT_GT(advances, 2) << "it was interrupted";
+  EXPECT_EQ(this->Scene->GetNumberOfSamples(), 2);
+  EXPECT_EQ(this->Scene->GetRefinedPart(), 1.0);
+  this->Window->Render();
+  vtkNew<vtkUnsignedCharArray> refined;
+  this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, refined);
+  EXPECT_EQ(GetDifference(refined, whole), 0.0);
+}
+
 TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
 {
   this->Renderer->AddVolume(this->Volume);

@@ -82,10 +82,10 @@ public:
 };
 
 /// Returns whether the image may be refined after it is shown. A captured image is kept, so it must
-/// be complete at once; stereo renders both eyes in turns.
+/// be complete at once.
 bool CanRefine(vtkPVRenderView* view)
 {
-  return view && !AskedView::IsCapturing(view) && !view->GetRenderWindow()->GetStereoRender();
+  return view && !AskedView::IsCapturing(view);
 }
 
 /// Sets which of the scene's windows are one display (pvserver's --tdx and --tdy).

@@ -317,27 +317,34 @@ void vtkDSMScene::SetTileDisplay(int columns, int rows, int gapX, int gapY)
 
 bool vtkDSMScene::IsRefined() const
 {
-  return this->Self->Accumulation.IsComplete();
+  const auto& eyes = this->Self->Eyes;
+  return eyes[0].Accumulation.IsComplete() && eyes[1].Accumulation.IsComplete();
 }
 
 bool vtkDSMScene::HasBegun() const
 {
-  return this->Self->HasBegun;
+  return this->Self->Eyes[0].HasBegun || this->Self->Eyes[1].HasBegun;
 }
 
 double vtkDSMScene::GetRefinedPart() const
 {
-  return this->Self->Accumulation.GetPart();
+  const auto& eyes = this->Self->Eyes;
+  const double left = eyes[0].Accumulation.GetPart();
+  return eyes[1].Accumulation.GetWanted() > 0 ? 0.5 * (left + eyes[1].Accumulation.GetPart())
+                                              : left;
 }
 
 int vtkDSMScene::GetNumberOfSamples() const
 {
-  return this->Self->Accumulation.GetSamples();
+  const auto& eyes = this->Self->Eyes;
+  const int left = eyes[0].Accumulation.GetSamples();
+  return eyes[1].Accumulation.GetWanted() > 0 ? std::min(left, eyes[1].Accumulation.GetSamples())
+                                              : left;
 }
 
 int vtkDSMScene::GetNumberOfSamplesWanted() const
 {
-  return this->Self->Accumulation.GetWanted();
+  return this->Self->Eyes[0].Accumulation.GetWanted();
 }
 
 bool vtkDSMScene::IsTracing() const
@@ -374,7 +381,7 @@ void vtkDSMScene::Trace()
     self.Renderer && !self.Renderer->GetSelector() && !self.Tracing && self.Prop->GetVisibility();
   if (traces && Internals::TracingTiles)
   {
-    self.Accumulation.Postpone();
+    self.Eye->Accumulation.Postpone();
   }
   else if (traces)
   {
@@ -413,7 +420,26 @@ bool vtkDSMScene::Advance(std::function<bool()> goesOn)
   const vtkSmartPointer<vtkDSMScene> tracing = this; // as Trace
   const bool wasRefined = this->IsRefined();
   self.GoesOn = std::move(goesOn);
-  const bool traced = this->TraceFrame();
+  bool traced = true;
+  vtkCamera* const camera = self.Renderer->GetActiveCamera();
+  const int leftEye = camera->GetLeftEye();
+  self.AdvancesLeft = !self.AdvancesLeft; // each has its turn
+  for (const bool isLeft : { self.AdvancesLeft, !self.AdvancesLeft })
+  {
+    if (self.IsStereo())
+    {
+      camera->SetLeftEye(isLeft ? 1 : 0);
+      traced = this->TraceFrame() && traced;
+    }
+    else if (isLeft)
+    {
+      traced = this->TraceFrame();
+    }
+  }
+  if (self.IsStereo())
+  {
+    camera->SetLeftEye(leftEye);
+  }
   this->EndReading();
   self.GoesOn = nullptr;
   return traced && !wasRefined;
@@ -473,6 +499,7 @@ bool vtkDSMScene::TraceFrame()
   Internals& self = *this->Self;
   self.Tracing = true;
   self.IsTraced = false;
+  self.ChooseEye();
   self.Prop->UseBoundsOn();
   self.Busy.emplace(vol::ReadAhead::GetShared());
   dsm::FirstFailure found;
@@ -505,7 +532,7 @@ bool vtkDSMScene::TraceFrame()
   if (!failure.empty() && self.IsTraced)
   {
     self.Statistics->Clear();
-    self.Accumulation.Clear();
+    self.Eye->Accumulation.Clear();
     self.ShowWhole();
   }
   else if (!failure.empty())

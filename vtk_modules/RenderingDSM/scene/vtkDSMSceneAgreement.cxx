@@ -271,9 +271,9 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   View view{};
   view.WorldToClip = std::exchange(request.WorldToClip, glm::dmat4(1.0));
   const int edge = this->GetMovingEdge(request);
-  view.Offer = this->Accumulation.CreateOffer(this->Group->GetStore(), scene,
+  view.Offer = this->Eye->Accumulation.CreateOffer(this->Group->GetStore(), scene,
     rt::Resolution::Reduce(request, edge), this->Light->GetSamplesPerPixel(), this->GetPace());
-  view.Shown = this->Shown;
+  view.Shown = this->Eye->Shown;
   view.Shown.MayDraft = !this->HasNextStep;
   view.Background = this->Background;
   const bool canBeApart = this->Delivery.CanSeparate(this->Group->GetMessenger().GetSize());
@@ -493,9 +493,9 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   {
     return;
   }
-  const rt::Frame& frame = this->Accumulation.GetFrame();
+  const rt::Frame& frame = this->Eye->Accumulation.GetFrame();
   const bool hasEdges =
-    messenger.GetSize() > 1 && scene.IsOpaque() && this->Accumulation.GetMostSamples() > 1;
+    messenger.GetSize() > 1 && scene.IsOpaque() && this->Eye->Accumulation.GetMostSamples() > 1;
   if (result == rt::FrameAccumulation::Result::Aborted)
   {
     // The renderer goes on: other ranks may wait for what this one draws.

@@ -6,6 +6,7 @@
 #include "vtkDSMFrameNotes.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCamera.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
@@ -35,6 +36,16 @@ std::string Describe(const dsm::Status& outcome)
                               : "Rank " + std::to_string(outcome.FailedRank) + ": " + outcome.Cause;
 }
 
+/// A camera learns whether its window is stereo when it renders, which is too late for its first frame. Only subclasses
+/// can tell it before; none is ever made.
+struct EyeOfCamera : vtkCamera
+{
+  static void SetStereo(vtkCamera* camera, bool isStereo)
+  {
+    camera->*& EyeOfCamera::Stereo = isStereo ? 1 : 0;
+  }
+};
+
 } // namespace
 
 vtkDSMScene::Internals::~Internals()
@@ -48,8 +59,31 @@ vtkDSMScene::Internals::~Internals()
 void vtkDSMScene::Internals::GiveUpBlocks()
 {
   this->Members.GiveUpBlocks();
-  this->Accumulation.Restart();
-  this->Shown.Content = 0;
+  for (Sight& eye : this->Eyes)
+  {
+    eye.Accumulation.Restart();
+    eye.Shown.Content = 0;
+  }
+}
+
+bool vtkDSMScene::Internals::IsStereo() const
+{
+  vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
+  return window && window->GetStereoRender() != 0;
+}
+
+void vtkDSMScene::Internals::ChooseEye()
+{
+  const bool isStereo = this->IsStereo();
+  if (!this->Image)
+  {
+    EyeOfCamera::SetStereo(this->Renderer->GetActiveCamera(), isStereo);
+  }
+  this->Eye = &this->Eyes[isStereo && !this->Renderer->GetActiveCamera()->GetLeftEye() ? 1 : 0];
+  if (!isStereo)
+  {
+    this->Eyes[1] = {};
+  }
 }
 
 std::uint64_t vtkDSMScene::Internals::GetOldestHidden() const
@@ -275,8 +309,8 @@ bool vtkDSMScene::Internals::IsReduced() const
 /// Returns the edge of a picture that is not a draft. `request`: of edge 1.
 int vtkDSMScene::Internals::GetMovingEdge(const rt::FrameRequest& request) const
 {
-  return this->IsReduced() ? rt::Resolution::GetMovingEdge(
-                               request, this->Shown.SecondsPerPixel, this->InteractiveReduction)
+  return this->IsReduced() ? rt::Resolution::GetMovingEdge(request,
+                               this->Eye->Shown.SecondsPerPixel, this->InteractiveReduction)
                            : 1;
 }
 
@@ -315,6 +349,8 @@ void vtkDSMScene::Internals::Clear()
 {
   this->Prop->Clear();
   this->Statistics->Clear();
-  this->Accumulation.Clear();
-  this->Shown = {};
+  for (Sight& eye : this->Eyes)
+  {
+    eye = {};
+  }
 }

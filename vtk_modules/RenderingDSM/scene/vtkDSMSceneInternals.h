@@ -69,6 +69,24 @@ public:
     bool IsTransparent;
   };
 
+  /// What an eye sees of the scene. On every rank the same, but after a failure.
+  struct Sight
+  {
+    rt::FrameAccumulation Accumulation;
+    rt::Resolution::Shown Shown;
+    bool HasAdvanced = false;          ///< since the last render of another picture
+    bool HasBegun = false;             ///< the last render, of a picture
+    glm::dmat4 LastWorldToClip{ 1.0 }; ///< of the accumulation's last whole frame
+  };
+  /// Returns whether the window shows the scene to two eyes; the same on every rank.
+  bool IsStereo() const;
+  /// Takes the eye that the camera stands for.
+  void ChooseEye();
+
+  Sight Eyes[2]; ///< left or only one, right
+  Sight* Eye = &this->Eyes[0];
+  bool AdvancesLeft = false; ///< of two eyes, the left one first
+
   vtkWeakPointer<vtkRenderer> Renderer;
   std::optional<Target> Image; ///< while one is traced
   unsigned long Observers[4] = { 0, 0, 0, 0 };
@@ -84,7 +102,6 @@ public:
   std::shared_ptr<vtkDSMRankGroup> Group;
   vtkNew<vtkDSMLightOptions> Light;
   vtkDSMSceneMembers Members;
-  rt::FrameAccumulation Accumulation;
   rt::MovingDetail Detail;
   vtkDSMFrameDelivery Delivery;
   vtkDSMDepthReader DepthReader;
@@ -101,14 +118,10 @@ public:
   /// The picture that was drawn last gets tiles and samples, and nothing is drawn, as long as this returns true on rank
   /// 0; empty: a frame is drawn.
   std::function<bool()> GoesOn;
-  bool HasAdvanced = false;          ///< since the last render of another picture
-  bool HasBegun = false;             ///< the last render, of a picture
-  glm::dmat4 LastWorldToClip{ 1.0 }; ///< of the accumulation's last whole frame
   int InteractiveReduction = 0;
   bool IsInteracting = false; ///< whatever rate the window wants
   bool ShowsDrafts = false;
-  bool HasNextStep = false;    ///< new data in place of others that were shown
-  rt::Resolution::Shown Shown; ///< on every rank the same, but after a failure
+  bool HasNextStep = false; ///< new data in place of others that were shown
   bool AlwaysFinest = false;
   vtkDSMTranslation::TileDisplay Display;
   /// Nothing is read ahead until the renderer has drawn the frame.

@@ -51,14 +51,14 @@ bool vtkDSMScene::Internals::IsLimited(const Task& task) const
 {
   return !this->Image && this->SecondsPerFrame > 0.0 && task.Shown.MayDraft &&
     (this->SamplesPerFrame > 0 || this->IsInteractive()) &&
-    this->Accumulation.GetFrame().Number > 0;
+    this->Eye->Accumulation.GetFrame().Number > 0;
 }
 
 /// Returns whether the picture was traced between frames, and will be after this one, too: it is shown as it is.
 bool vtkDSMScene::Internals::IsUnderWay(const Task& task) const
 {
-  return this->HasAdvanced && this->IsLimited(task) && this->DrawsDrafts() &&
-    !this->Accumulation.IsComplete();
+  return this->Eye->HasAdvanced && this->IsLimited(task) && this->DrawsDrafts() &&
+    !this->Eye->Accumulation.IsComplete();
 }
 
 /// Returns whether a finer picture is to replace that one.
@@ -111,12 +111,12 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(Task task, Offe
   {
     return Result::Nothing; // something else is to be drawn first
   }
-  this->HasBegun = !this->GoesOn && !isKnown;
-  this->HasAdvanced = static_cast<bool>(this->GoesOn) || (this->HasAdvanced && isKnown);
+  this->Eye->HasBegun = !this->GoesOn && !isKnown;
+  this->Eye->HasAdvanced = static_cast<bool>(this->GoesOn) || (this->Eye->HasAdvanced && isKnown);
   if (!this->GoesOn && this->IsUnderWay(task))
   {
     const std::int64_t edge =
-      this->Accumulation.GetBegun().Number > 0 ? task.Shown.BegunEdge : task.Shown.Edge;
+      this->Eye->Accumulation.GetBegun().Number > 0 ? task.Shown.BegunEdge : task.Shown.Edge;
     this->Group->GetMessenger().Insist(
       [&] { task.Request = rt::Resolution::Reduce(task.Whole, static_cast<int>(edge)); });
     return Result::Aborted;
@@ -126,8 +126,8 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TraceScene(Task task, Offe
   {
     result = this->TracePicture(task, offers);
     offers.clear();
-    task.Shown = this->Shown;
-  } while (this->GoesOn && result == Result::Traced && !this->Accumulation.IsComplete());
+    task.Shown = this->Eye->Shown;
+  } while (this->GoesOn && result == Result::Traced && !this->Eye->Accumulation.IsComplete());
   this->Group->GetFrameRenderer().SetWatch({});
   return result;
 }
@@ -172,7 +172,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
           task.Request.IsPreview = isDraft || task.Whole.IsPreview;
           task.Scene.Transport.MediumErrors =
             isDraft ? rt::Resolution::MediumErrors : task.MediumErrors;
-          return this->Accumulation.CreateOffer(store, task.Scene, task.Request, wanted, pace);
+          return this->Eye->Accumulation.CreateOffer(store, task.Scene, task.Request, wanted, pace);
         });
     }
     this->Detail.Begin();
@@ -196,16 +196,16 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
         (mayWaitTooLong && this->Detail.IsTooLong(this->Group->GetStore()));
     };
     messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
-    result = this->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store }, offers,
-      task.Scene, task.Request, wanted, pace, report);
+    result = this->Eye->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store },
+      offers, task.Scene, task.Request, wanted, pace, report);
     if (result == Result::Traced)
     {
       this->NoteTraced(task, *next);
     }
     if (result != Result::Aborted)
     {
-      this->Shown = { task.Content, edge,
-        this->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()) };
+      this->Eye->Shown = { task.Content, edge,
+        this->Eye->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()) };
     }
     else if (next + 1 == tries.end())
     {
@@ -213,7 +213,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
     }
     if (isDraft)
     {
-      this->Accumulation.Postpone();
+      this->Eye->Accumulation.Postpone();
     }
   }
   return result;
@@ -225,43 +225,44 @@ void vtkDSMScene::Internals::NoteTraced(const Task& task, const Try& done)
   this->Group->GetMessenger().Insist(
     [&]
     {
-      this->Statistics->Take(this->Accumulation.GetFrame(),
-        this->IsDraft(done) ? 0 : this->Accumulation.GetSamples(), this->Accumulation.GetWanted(),
-        done.Coarser);
+      this->Statistics->Take(this->Eye->Accumulation.GetFrame(),
+        this->IsDraft(done) ? 0 : this->Eye->Accumulation.GetSamples(),
+        this->Eye->Accumulation.GetWanted(), done.Coarser);
     });
   if (!this->DrawsDrafts() && (done.Coarser > 0 || task.Coarser > 0))
   {
     this->Detail.Note(
       done.Coarser, this->Statistics->GetNumberOfMisses(), this->Statistics->GetFrameSeconds());
   }
-  this->LastWorldToClip = task.Request.WorldToClip;
+  this->Eye->LastWorldToClip = task.Request.WorldToClip;
 }
 
 /// A picture lacks tiles or samples. Between frames, the statistics show how far it is.
 void vtkDSMScene::Internals::NoteAborted(const Task& task, const Try& begun)
 {
-  const bool hasBegun = this->Accumulation.GetBegun().Number > 0;
-  const rt::Frame& frame = hasBegun ? this->Accumulation.GetBegun() : this->Accumulation.GetFrame();
+  const bool hasBegun = this->Eye->Accumulation.GetBegun().Number > 0;
+  const rt::Frame& frame =
+    hasBegun ? this->Eye->Accumulation.GetBegun() : this->Eye->Accumulation.GetFrame();
   if (this->GoesOn)
   {
     this->Group->GetMessenger().Insist(
       [&]
       {
-        this->Statistics->Take(
-          frame, this->Accumulation.GetSamples(), this->Accumulation.GetWanted(), begun.Coarser);
+        this->Statistics->Take(frame, this->Eye->Accumulation.GetSamples(),
+          this->Eye->Accumulation.GetWanted(), begun.Coarser);
       });
   }
   if (!hasBegun)
   {
     return;
   }
-  this->Shown.Begun = task.Content;
-  this->Shown.BegunEdge = begun.Picture.Edge;
+  this->Eye->Shown.Begun = task.Content;
+  this->Eye->Shown.BegunEdge = begun.Picture.Edge;
   if (this->IsInteractive() && begun.Picture.Seconds < Unlimited)
   {
     // The next moving picture has to be coarser. All ranks find the same.
-    double& seconds = this->Shown.SecondsPerPixel;
-    const double pixels = this->Accumulation.CountBegunPixels();
+    double& seconds = this->Eye->Shown.SecondsPerPixel;
+    const double pixels = this->Eye->Accumulation.CountBegunPixels();
     const double whole = static_cast<double>(task.Request.Width) * task.Request.Height;
     seconds = pixels > 0.0 ? begun.Picture.Seconds / pixels
                            : std::max(Surprise * seconds, begun.Picture.Seconds / whole);
@@ -274,14 +275,14 @@ rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bo
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto get = [&](const rt::Frame& frame)
   { return this->Delivery.Gather(messenger, frame, this->Delivery.Assemble(frame), hasEdges); };
-  const rt::Frame& begun = this->Accumulation.GetBegun();
-  rt::Picture picture = get(this->Accumulation.GetFrame());
+  const rt::Frame& begun = this->Eye->Accumulation.GetBegun();
+  rt::Picture picture = get(this->Eye->Accumulation.GetFrame());
   if (begun.Number > 0)
   {
     double middle[3];
     vtkBoundingBox(this->Bounds).GetCenter(middle);
     picture = rt::Stopgap::Move(
-      picture, this->LastWorldToClip, request, { middle[0], middle[1], middle[2] });
+      picture, this->Eye->LastWorldToClip, request, { middle[0], middle[1], middle[2] });
     rt::Stopgap::Cover(begun, get(begun), picture);
   }
   return picture;
