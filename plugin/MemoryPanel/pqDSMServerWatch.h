@@ -14,8 +14,8 @@ class vtkSMSession;
 /// search paths: ParaView itself does this only for the first one of --plugins. If the plugin is missing there,
 /// nothing happens, and ParaView asks for it.
 ///
-/// When a server ends, the application hears of it at once, also what the server had to say at last
-/// (vtkPVDSMRankWatch), and before ParaView asks what to do, the state and the pictures of all views are saved in the
+/// When a server ends, the application hears of it at once, and of the reason, if the server sent it
+/// (vtkPVDSMRankWatch). Before ParaView asks what to do, the state and the pictures of all views are saved in the
 /// user's folder of settings. The application's thread.
 class pqDSMServerWatch : public QObject
 {

@@ -8,9 +8,9 @@
 class vtkPVRenderView;
 class vtkUnsignedCharArray;
 
-/// Compresses the pictures that a server sends to its client, without losses, in place of ParaView's LZ4: by Zstandard,
-/// after a prediction. Each pixel is like the one below it, or like that of the picture before, of which only some tiles
-/// may have changed. What is sent is the difference. One thread.
+/// Compresses the pictures that a server sends to its client, without losses, in place of ParaView's LZ4: by
+/// Zstandard, after a prediction. Each pixel is like the one below it, or like that of the picture before, of which
+/// only some tiles may have changed. The server sends the difference. One thread.
 class vtkPVDSMImageCompressor : public vtkLZ4Compressor
 {
 public:

@@ -2,10 +2,10 @@
 #ifndef vtkPVDSMRankWatch_h
 #define vtkPVDSMRankWatch_h
 
-/// Tells a server's clients which of its ranks has ended, where and why, before the connection ends: MPI ends all ranks
-/// when one of them does. Each rank has a connection to the first one, which the system closes when the rank ends; a
-/// rank that ends by a signal that it can handle sends its number before. The first rank ends by itself if MPI has not
-/// ended it after some seconds, so that no client waits for it.
+/// Reports to a server's clients which of its ranks has ended, where and why, before the connection ends: MPI ends all
+/// ranks when one of them does. Each rank has a connection to the first one, which the system closes when the rank
+/// ends; a rank that ends by a signal that it can handle sends its number before. The first rank ends by itself if MPI
+/// has not ended it after some seconds, so that no client waits for it.
 class vtkPVDSMRankWatch
 {
 public:

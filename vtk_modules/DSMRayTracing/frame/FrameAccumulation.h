@@ -88,8 +88,8 @@ public:
   /// Returns the samples that some pixels have; 0 for a first sample that was aborted.
   int GetMostSamples() const { return this->Samples + this->SamplesUnderWay; }
   int GetWanted() const { return this->Wanted; }
-  /// Returns the part of all samples that is there; of a first sample, the part of its tiles. 1 only for a frame that is
-  /// complete.
+  /// Returns the part of all samples that is there; of a first sample, the part of its tiles. 1 only for a frame that
+  /// is complete.
   double GetPart() const;
 
   /// Returns the seconds for one sample of each pixel in the last render; 0 if unknown.

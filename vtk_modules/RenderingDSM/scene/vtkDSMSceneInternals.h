@@ -69,7 +69,7 @@ public:
     bool IsTransparent;
   };
 
-  /// What an eye sees of the scene. On every rank the same, but after a failure.
+  /// The pictures that an eye sees. On every rank the same, but after a failure.
   struct Sight
   {
     rt::FrameAccumulation Accumulation;
