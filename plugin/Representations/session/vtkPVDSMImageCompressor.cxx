@@ -61,6 +61,13 @@ std::size_t CountBytes(vtkUnsignedCharArray* pixels)
   return static_cast<std::size_t>(pixels->GetNumberOfValues());
 }
 
+/// Returns the bytes of a row; all, where nobody has told the width.
+std::size_t CountRowBytes(vtkIdType width, vtkUnsignedCharArray* pixels)
+{
+  const auto row = static_cast<std::size_t>(width * pixels->GetNumberOfComponents());
+  return row > 0 ? std::min(row, CountBytes(pixels)) : CountBytes(pixels);
+}
+
 /// Writes how `bytes` values differ from their predictions.
 void Subtract(const unsigned char* values, const unsigned char* predicted, std::size_t bytes,
   unsigned char* difference)
@@ -141,8 +148,7 @@ int vtkPVDSMImageCompressor::Compress()
   if (this->Input && this->Output && vtkPVDSMClientWatch::CountClients() == 1)
   {
     const std::size_t bytes = CountBytes(this->Input);
-    const std::size_t row =
-      std::min(bytes, static_cast<std::size_t>(this->Width * this->Input->GetNumberOfComponents()));
+    const std::size_t row = CountRowBytes(this->Width, this->Input);
     const unsigned char* const pixels = this->Input->GetPointer(0);
     const bool isLike = CountBytes(this->Last) == bytes &&
       CountLike(pixels, this->Last->GetPointer(0), bytes) > CountLikeRowBelow(pixels, bytes, row);
@@ -192,8 +198,7 @@ int vtkPVDSMImageCompressor::Decompress()
   if (trailer.Magic == Trailer::Mark)
   {
     const std::size_t bytes = CountBytes(this->Output);
-    const std::size_t row = std::min(
-      bytes, static_cast<std::size_t>(this->Width * this->Output->GetNumberOfComponents()));
+    const std::size_t row = CountRowBytes(this->Width, this->Output);
     unsigned char* const pixels = this->Output->GetPointer(0);
     if (ZSTD_decompress(pixels, bytes, this->Input->GetPointer(0), size) != bytes ||
       (trailer.Prediction == Trailer::FromLastPicture && CountBytes(this->Last) != bytes))
@@ -208,7 +213,7 @@ int vtkPVDSMImageCompressor::Decompress()
     else
     {
       // Row by row: each needs the one below.
-      for (std::size_t at = row; row > 0 && at < bytes; at += row)
+      for (std::size_t at = row; at < bytes; at += row)
       {
         Add(pixels + at, pixels + at - row, std::min(row, bytes - at), pixels + at);
       }
