@@ -52,7 +52,7 @@ bool IsLoaded(vtkPVPluginsInformation* plugins)
   return false;
 }
 
-/// Returns whether a server has sent what nobody has asked for, or has closed its connection.
+/// Returns whether the server has sent something that is not read yet, or has closed its connection.
 bool HasSent(vtkSMSession* session)
 {
   vtkMultiProcessController* const server = session->GetController(vtkPVSession::DATA_SERVER_ROOT);

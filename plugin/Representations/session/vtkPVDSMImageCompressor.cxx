@@ -61,7 +61,7 @@ std::size_t CountBytes(vtkUnsignedCharArray* pixels)
   return static_cast<std::size_t>(pixels->GetNumberOfValues());
 }
 
-/// Returns the bytes of a row; all, where nobody has told the width.
+/// Returns the bytes of a row; those of the whole picture if the width is unknown.
 std::size_t CountRowBytes(vtkIdType width, vtkUnsignedCharArray* pixels)
 {
   const auto row = static_cast<std::size_t>(width * pixels->GetNumberOfComponents());
@@ -82,17 +82,7 @@ void Add(const unsigned char* difference, const unsigned char* predicted, std::s
   std::transform(difference, difference + bytes, predicted, values, std::plus<unsigned char>());
 }
 
-/// How many bytes of a picture are like the row below; the first of these have none.
-std::size_t CountLikeRowBelow(const unsigned char* pixels, std::size_t bytes, std::size_t row)
-{
-  std::size_t count = 0;
-  for (std::size_t at = row; at < bytes; ++at)
-  {
-    count += pixels[at] == pixels[at - row] ? 1 : 0;
-  }
-  return count;
-}
-
+/// Returns how many of `bytes` values are like the others.
 std::size_t CountLike(const unsigned char* pixels, const unsigned char* others, std::size_t bytes)
 {
   std::size_t count = 0;
@@ -151,7 +141,8 @@ int vtkPVDSMImageCompressor::Compress()
     const std::size_t row = CountRowBytes(this->Width, this->Input);
     const unsigned char* const pixels = this->Input->GetPointer(0);
     const bool isLike = CountBytes(this->Last) == bytes &&
-      CountLike(pixels, this->Last->GetPointer(0), bytes) > CountLikeRowBelow(pixels, bytes, row);
+      CountLike(pixels, this->Last->GetPointer(0), bytes) >
+        CountLike(pixels + row, pixels, bytes - row);
     const Trailer trailer{ Trailer::Mark,
       isLike ? Trailer::FromLastPicture : Trailer::FromRowBelow };
     unsigned char* const difference =

@@ -40,7 +40,7 @@ constexpr std::array<int, 6> Deadly = { SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT
 constexpr std::chrono::seconds Patience(10);
 /// Seconds for a rank's connection to the first.
 constexpr int ConnectionSeconds = 5;
-/// A rank that ends together with another gives the first rank so many milliseconds to tell of the other.
+/// When the first rank is to end, it waits at most so long for the report that another rank has ended before.
 constexpr int Turns = 30;
 constexpr int TurnMilliseconds = 10;
 

@@ -272,7 +272,7 @@ void vtkPVDSMRefinement::OnRenderBegins(vtkObject*, unsigned long, void*)
     });
 }
 
-/// A client that can take them asks its server for pictures in fewer bytes.
+/// Asks the server for pictures in fewer bytes, if this client can decompress them.
 void vtkPVDSMRefinement::CompressPictures()
 {
   if (!this->IsRemote() || this->View->GetSession()->IsMultiClients() ||

@@ -421,24 +421,21 @@ bool vtkDSMScene::Advance(std::function<bool()> goesOn)
   const bool wasRefined = this->IsRefined();
   self.GoesOn = std::move(goesOn);
   bool traced = true;
-  vtkCamera* const camera = self.Renderer->GetActiveCamera();
-  const int leftEye = camera->GetLeftEye();
-  self.AdvancesLeft = !self.AdvancesLeft; // each has its turn
-  for (const bool isLeft : { self.AdvancesLeft, !self.AdvancesLeft })
+  if (self.IsStereo())
   {
-    if (self.IsStereo())
+    vtkCamera* const camera = self.Renderer->GetActiveCamera();
+    const int leftEye = camera->GetLeftEye();
+    self.AdvancesLeft = !self.AdvancesLeft; // each has its turn
+    for (const bool isLeft : { self.AdvancesLeft, !self.AdvancesLeft })
     {
       camera->SetLeftEye(isLeft ? 1 : 0);
       traced = this->TraceFrame() && traced;
     }
-    else if (isLeft)
-    {
-      traced = this->TraceFrame();
-    }
-  }
-  if (self.IsStereo())
-  {
     camera->SetLeftEye(leftEye);
+  }
+  else
+  {
+    traced = this->TraceFrame();
   }
   this->EndReading();
   self.GoesOn = nullptr;
