@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Over real MPI ranks, the picture is that of one rank alone, bit for bit.
+#include "tests/support/InterruptedView.h"
 #include "tests/support/LoopbackCluster.h"
 #include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
@@ -10,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <tuple>
 #include <utility>
 
@@ -87,43 +87,8 @@ TEST_P(FrameOverMpi, CacheHoldsOneBrick)
     GetPictureHash(TraceTurning(this->Messenger, this->Create(oneBrick, 2))), GetReference());
 }
 
-TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanks)
+TEST_P(FrameOverMpi, AbortedFramesEndOnAllRanksAndTheirPicturesAreRight)
 {
-  dsm::BlockStore store(this->Messenger, this->Create(PlentyOfCache, 2));
-  const rt::Scene scene =
-    SphereScene::CreateScene(SphereScene::Publish(this->Messenger, store), 1.0f);
-  rt::FrameRenderer renderer(this->Messenger);
-  int left = -1; // looks at the abort status before it is set
-  renderer.SetWatch([&](double) { return left >= 0 && left-- == 0; });
-  std::mt19937 random(11);
-  int aborted = 0;
-  std::uint64_t expected = 0;
-  for (int round = 0; round < 12; ++round)
-  {
-    rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
-    request.Channels.Value = rt::ChannelSet::All;
-    request.Scheduling =
-      round % 2 == 0 ? rt::TileScheduling::CentralQueue : rt::TileScheduling::WorkStealing;
-    // The first one begins with it.
-    left = round == 0 ? -1 : static_cast<int>(random() % (2 * round - 1));
-    rt::Frame frame = renderer.Render(store, scene, request);
-    left = -1;
-    if (frame.IsAborted)
-    {
-      ++aborted;
-      const std::size_t left0 = this->Messenger.AllGatherValue(frame.Left.size()).front();
-      EXPECT_EQ(frame.Left.size(), left0) << "the same on every rank";
-      left = static_cast<int>(random() % (2 * round));
-      renderer.Resume(store, scene, request, frame);
-      left = -1;
-    }
-    if (frame.IsAborted)
-    {
-      renderer.Resume(store, scene, request, frame);
-    }
-    const std::uint64_t hash = GetPictureHash(rt::GatherFrame(this->Messenger, frame));
-    expected = round == 0 ? hash : expected;
-    EXPECT_EQ(hash, expected) << "round " << round;
-  }
-  EXPECT_GT(aborted, 0);
+  InterruptedView view(this->Messenger, this->Create(PlentyOfCache, 2));
+  EXPECT_GT(view.Abort(InterruptedView::CountAborts(12), 11), 0);
 }

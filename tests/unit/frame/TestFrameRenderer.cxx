@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/InterruptedView.h"
 #include "tests/support/LoopbackCluster.h"
 #include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
@@ -387,13 +388,11 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
         EXPECT_EQ(whole.Depth, plain.Depth);
         EXPECT_EQ(whole.Normal.size(), 3 * whole.Depth.size());
         request.Samples = 1;
-        request.IsPreview = true;
         rt::Frame frame = renderer.Render(store, scene, request);
         for (const int samples : { 2, 3 })
         {
           request.FirstSample += request.Samples;
           request.Samples = samples;
-          request.IsPreview = samples == 2;
           renderer.Refine(store, scene, request, frame);
         }
         const rt::Picture refined = rt::GatherFrame(messenger, frame);
@@ -410,13 +409,23 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
   }
 }
 
+TEST(FrameRendererOnLoopback, PicturesOfAnInterruptedViewAreRight)
+{
+  RunOnCluster(3,
+    [](dsm::Messenger& messenger)
+    {
+      InterruptedView view(messenger, SphereScene::CreateSettings(std::size_t(1) << 16, 2));
+      EXPECT_GT(view.Abort(InterruptedView::CountAborts(30), 7), 0);
+    });
+}
+
 /// Whether the ranks are waited for in vain is a matter of the moment, so there are many.
 class AbortedFrame : public testing::TestWithParam<std::tuple<int, rt::TileScheduling>>
 {
 };
 
 INSTANTIATE_TEST_SUITE_P(RanksAndSchedulers, AbortedFrame,
-  testing::Combine(testing::Values(1, 2, 3, 4),
+  testing::Combine(testing::Values(1, 2),
     testing::Values(rt::TileScheduling::CentralQueue, rt::TileScheduling::WorkStealing)));
 
 TEST_P(AbortedFrame, EndsOnAllRanksAndTheNextOneIsRight)
