@@ -86,6 +86,7 @@ rt::LightTransport CreateTransport(const VolumeOptions& options, const rt::Latti
 {
   rt::LightTransport transport;
   transport.Shadows = options.Shadows;
+  transport.LightRadius = options.LightRadius;
   transport.AmbientOcclusionSamples = options.Occlusion;
   transport.AmbientOcclusionDistance = 0.2 *
     glm::length(glm::dmat3(field.IndexToWorld) * glm::dvec3(field.Voxels->Lattice.GetCells()));

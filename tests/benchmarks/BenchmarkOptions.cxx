@@ -11,6 +11,9 @@ void BenchmarkOptions::AddTo(CLI::App& app)
     ->check(CLI::NonNegativeNumber);
   app.add_option("--tile-seconds", this->TileSeconds,
     "on: the result has the mean cost of each tile (default off)");
+  app.add_option("--filter", this->Filter,
+    "on: the result compares a picture of one sample, whose light is filtered, with those of 16 "
+    "and 256 (default off)");
   this->VolumeOptions::AddTo(app);
   app.get_option("--occlusion")
     ->description(

@@ -30,6 +30,9 @@ void VolumeOptions::AddTo(CLI::App& app)
     ->check(CLI::PositiveNumber);
   app.add_option(
     "--shadows", this->Shadows, "on: hard shadows of a lamp beside the camera; off (default)");
+  app.add_option("--light-radius", this->LightRadius, "above 0: shadows are soft")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
   app
     .add_option("--occlusion", this->Occlusion,
       "ambient occlusion rays for each place that is lit, a fifth of the volume's diagonal long")

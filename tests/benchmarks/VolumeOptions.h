@@ -18,10 +18,11 @@ struct VolumeOptions : RunOptions
   int BrickEdge = 0;           ///< cells; 0: the default of the scalar type
   int TileSize = rt::FrameRequest().TileSize;
   bool Shadows = false; ///< of a lamp beside the camera
-  int Occlusion = 0;    ///< ambient occlusion rays for each place that is lit
-  int Samples = 1;      ///< per pixel
-  std::string Session;  ///< file; empty: an orbit
-  std::string Picture;  ///< PPM file of the first frame; empty: none
+  double LightRadius = 0.0;
+  int Occlusion = 0;   ///< ambient occlusion rays for each place that is lit
+  int Samples = 1;     ///< per pixel
+  std::string Session; ///< file; empty: an orbit
+  std::string Picture; ///< PPM file of the first frame; empty: none
 
   /// Adds the options that change this object.
   void AddTo(CLI::App& app);

@@ -6,6 +6,7 @@
 #include "BenchmarkVolume.h"
 #include "CellBenchmark.h"
 #include "DelayedTransport.h"
+#include "FilterBenchmark.h"
 #include "MediumBenchmark.h"
 #include "MeshBenchmark.h"
 #include "PictureFile.h"
@@ -342,6 +343,12 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     sums[1].Add(without[number]);
   }
   const Json rates = CompareRays(options, messenger, positions.size(), sums[0], sums[1]);
+  const Camera first =
+    GetCamera(object.Field, static_cast<double>(options.Width) / options.Height, positions.front());
+  scene.Lights.front() = CreateLamp(options, first);
+  const Json filter = options.Filter ? BenchmarkFilter(messenger, store, renderer, scene,
+                                         CreateRequest(options, first), options.Repeat)
+                                     : Json();
   if (messenger.GetRank() == 0)
   {
     Json result = Summarise(options, store, timing, ranks);
@@ -359,6 +366,10 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     {
       result.update(rates);
     }
+    if (options.Filter)
+    {
+      result["filter"] = filter;
+    }
     std::ostringstream text;
     text << options.Volume << ": " << result["frames_per_second"].get<double>() << " frames/s, "
          << 1e-6 * result["rays_per_second"].get<double>() << " million rays/s, picture "
@@ -372,6 +383,10 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
            << " million light rays/s (" << rates["light_over_primary"].get<double>()
            << "); the frame takes " << rates["frame_over_primary_frame"].get<double>()
            << " times that of primary rays\n";
+    }
+    if (options.Filter)
+    {
+      text << "filtered, beside one and many samples: " << filter.dump() << '\n';
     }
     RunOptions::Write(options.Json, result.dump(2), text.str());
   }

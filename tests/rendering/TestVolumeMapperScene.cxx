@@ -273,7 +273,7 @@ TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
   }
 }
 
-TEST_F(VolumeMapper, SharesTheLightOfOcclusionAtInteractiveRates)
+TEST_F(VolumeMapper, FiltersTheLightOfOcclusionAtInteractiveRates)
 {
   this->Renderer->AddVolume(this->Volume);
   vtkNew<vtkPlane> middle; // lays the hollow open, of which a single ray sees all or nothing
@@ -301,7 +301,23 @@ TEST_F(VolumeMapper, SharesTheLightOfOcclusionAtInteractiveRates)
     return sum;
   };
   EXPECT_LT(sumSteps(moving), 0.5 * sumSteps(still)) << "no black dots";
-  EXPECT_EQ(grab(0.001), still) << "a picture at rest is the same on any number of ranks";
+  EXPECT_EQ(grab(0.001), still);
+  this->Mapper->GetLightOptions()->SetDenoise(vtkDSMLightOptions::DenoiseAlways);
+  EXPECT_EQ(grab(0.001), moving);
+  this->Mapper->GetLightOptions()->SetDenoise(vtkDSMLightOptions::DenoiseNever);
+  EXPECT_EQ(grab(15.0), still);
+
+  // A picture that gets its samples one by one is filtered until it has all.
+  this->Mapper->GetLightOptions()->SetSamplesPerPixel(3);
+  const std::vector<unsigned char> exact = grab(0.001);
+  this->Mapper->GetLightOptions()->SetDenoise(vtkDSMLightOptions::DenoiseIncomplete);
+  this->Scene->SetSamplesPerFrame(1);
+  for (int samples = 1; samples < 3; ++samples)
+  {
+    EXPECT_LT(sumSteps(grab(0.001)), 0.7 * sumSteps(exact)) << samples;
+    EXPECT_EQ(this->Scene->GetNumberOfSamples(), samples);
+  }
+  EXPECT_EQ(grab(0.001), exact);
 }
 
 TEST_F(VolumeMapper, TellsTheProgressAndCanBeAborted)

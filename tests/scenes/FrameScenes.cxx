@@ -191,17 +191,6 @@ void AddPictures(Scenes& scenes)
         } });
     }
   }
-  for (const auto& [subjectName, subject] : Subjects)
-  {
-    scenes.push_back({ "samples.Preview." + subjectName,
-      [subject = subject](SceneStage& stage)
-      {
-        stage.Request.IsPreview = true;
-        stage.World.Transport.AmbientOcclusionSamples = 1;
-        stage.World.Transport.AmbientOcclusionDistance = 1.0;
-        AddSubject(stage, subject, 0.7f);
-      } });
-  }
   for (const int layers : { 2, 3, 8 })
   {
     for (const int samples : { 1, 3 })

@@ -415,7 +415,7 @@ TEST(FrameRendererOnLoopback, PicturesOfAnInterruptedViewAreRight)
     [](dsm::Messenger& messenger)
     {
       InterruptedView view(messenger, SphereScene::CreateSettings(std::size_t(1) << 16, 2));
-      EXPECT_GT(view.Abort(InterruptedView::CountAborts(30), 7), 0);
+      EXPECT_GT(view.Abort(InterruptedView::CountAborts(12), 7), 0);
     });
 }
 

@@ -48,8 +48,7 @@ protected:
     return FunctionVolume::Publish(points, function, this->Messenger, this->Store);
   }
 
-  rt::Picture Trace(
-    const rt::Scene& scene, int samples = 1, bool isPreview = false, rt::ChannelSet channels = {})
+  rt::Picture Trace(const rt::Scene& scene, int samples = 1, rt::ChannelSet channels = {})
   {
     rt::FrameRequest request;
     request.Channels = channels;
@@ -57,7 +56,6 @@ protected:
     request.Height = PictureSize;
     request.WorldToClip = Parallel;
     request.Samples = samples;
-    request.IsPreview = isPreview;
     rt::FrameRenderer renderer(this->Messenger);
     return rt::GatherFrame(this->Messenger, renderer.Render(this->Store, scene, request));
   }
@@ -163,32 +161,6 @@ TEST_F(LightTransportTest, OcclusionOfACornerIsThatOfBruteForce)
   }
 }
 
-TEST_F(LightTransportTest, PreviewSharesOcclusionBetweenPixels)
-{
-  rt::Scene scene;
-  scene.Objects = { this->Publish(
-    [](const glm::dvec3& p) { return std::min(p.z - FloorHeight, p.x + 0.5); }) };
-  scene.Lights = { rt::Light() };
-  scene.Transport.AmbientOcclusionSamples = 1;
-  scene.Transport.AmbientOcclusionDistance = 1.0;
-  const rt::Picture expected = this->Trace(scene, 256);
-  const auto getError = [&](const rt::Picture& picture)
-  {
-    double sum = 0.0;
-    for (int y = 0; y < PictureSize; ++y)
-    {
-      for (int x = PictureSize / 4 + 2; x < PictureSize; ++x)
-      {
-        sum += std::abs(GetRed(picture, x, y) - GetRed(expected, x, y));
-      }
-    }
-    return sum;
-  };
-  EXPECT_LT(getError(this->Trace(scene, 1, true)), 0.3 * getError(this->Trace(scene)));
-  scene.Transport.AmbientOcclusionSamples = 0;
-  EXPECT_EQ(GetPictureHash(this->Trace(scene, 1, true)), GetPictureHash(this->Trace(scene)));
-}
-
 TEST_F(LightTransportTest, OcclusionEndsAtItsDistance)
 {
   rt::Scene scene;
@@ -242,8 +214,8 @@ TEST_F(LightTransportTest, ChannelsOnRequestDescribeTheFirstSurface)
   scene.Lights = { GetSlantedLight() };
   rt::ChannelSet channels;
   channels.Value = rt::ChannelSet::All;
-  const rt::Picture picture = this->Trace(scene, 1, false, channels);
-  const rt::Picture averaged = this->Trace(scene, 16, false, channels);
+  const rt::Picture picture = this->Trace(scene, 1, channels);
+  const rt::Picture averaged = this->Trace(scene, 16, channels);
   EXPECT_EQ(averaged.Object, picture.Object);
   int objects[2] = {};
   int between = 0;

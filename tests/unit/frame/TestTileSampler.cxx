@@ -88,7 +88,7 @@ private:
     const rt::PixelRays rays(request);
     const rt::SceneTracers tracers = rt::CreateSceneTracers(store, worker, scene);
     const rt::TileSampler together(tracers, scene, rays, request);
-    const rt::PixelSampler alone(tracers, scene, rays, false, request.Channels);
+    const rt::PixelSampler alone(tracers, scene, rays, request.Channels);
     const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
     PixelDifference difference;
     store.BeginFrame();

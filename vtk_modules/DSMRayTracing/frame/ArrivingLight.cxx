@@ -22,11 +22,6 @@ constexpr double LeftInFaintShadow = 0.4;
 constexpr double GrazingCosine = 0.15;
 constexpr double FullCosine = 0.6;
 
-/// Points that share their ambient light have normals with less than this angle between them ...
-constexpr double AlikeCosine = 0.8;
-/// ... and lie this near to a common plane, as a part of the distance of ambient occlusion.
-constexpr double FlatPart = 0.1;
-
 float GetBrightness(const Light& light)
 {
   return light.Color.x + light.Color.y + light.Color.z;
@@ -113,43 +108,6 @@ std::vector<LightSample> ArrivingLight::FindArriving(
   return arriving;
 }
 
-void ArrivingLight::ShareAmbient(std::vector<ShadingPoint>& points) const
-{
-  const double apart = FlatPart * this->World.Transport.AmbientOcclusionDistance;
-  RayMask left = points.empty() ? 0 : ~RayMask{ 0 } >> (MaxRays - points.size());
-  left = FindRays(left, [&](int number) { return points[number].IsLit; });
-  for (std::size_t first = 0; first < points.size(); ++first)
-  {
-    if ((left & GetBit(static_cast<int>(first))) == 0)
-    {
-      continue;
-    }
-    const ShadingPoint& point = points[first];
-    double visible = 0.0;
-    glm::dvec3 arriving(0.0);
-    const RayMask alike = FindRays(left,
-      [&](int number)
-      {
-        const ShadingPoint& other = points[number];
-        const bool isAlike = static_cast<std::size_t>(number) == first ||
-          (glm::dot(other.Normal, point.Normal) > AlikeCosine &&
-            std::abs(glm::dot(other.Position - point.Position, point.Normal)) < apart);
-        visible += isAlike ? other.AmbientVisibility : 0.0;
-        arriving += isAlike ? other.Surroundings : glm::dvec3(0.0);
-        return isAlike;
-      });
-    const int count = GetCount(alike);
-    ForEachRay(alike,
-      [&](int number)
-      {
-        points[number].AmbientVisibility = visible / count;
-        points[number].Surroundings = arriving / static_cast<double>(count);
-      });
-    left &= ~alike;
-  }
-}
-
-/// The point when nothing is near it.
 ShadingPoint ArrivingLight::GetPoint(const LightPath& path) const
 {
   const SurfacePoint& point = path.Point;

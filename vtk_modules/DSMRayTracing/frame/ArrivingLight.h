@@ -31,12 +31,10 @@ public:
   std::vector<LightSample> FindArriving(
     LightPath* const* paths, int count, const ShadingPoint* points) const;
 
-  /// For previews: gives each of at most MaxRays points that lie close together in the picture the mean ambient
-  /// light of those that are on the same surface, which is that of more rays.
-  void ShareAmbient(std::vector<ShadingPoint>& points) const;
+  /// The point that a path is at, as if nothing were near it.
+  ShadingPoint GetPoint(const LightPath& path) const;
 
 private:
-  ShadingPoint GetPoint(const LightPath& path) const;
   void LookAround(LightPath* const* paths, int count, ShadingPoint* points) const;
   void FindVisibility(std::size_t lamp, LightPath* const* paths, int count,
     const ShadingPoint* points, const LightSample* samples, glm::dvec3* visibility) const;

@@ -20,6 +20,8 @@ struct ChannelSet
     Albedo = 8,
     Object = 16,
     Integral = 32,
+    /// Sums that LightFilter needs (Tile), without values of their own.
+    Light = 64,
     Always = Color | Depth,
     All = Always | Normal | Albedo | Object | Integral
   };

@@ -4,7 +4,9 @@
 
 #include "DSMCore/base/Counters.h"
 #include "DSMCore/store/MemoryOrganization.h"
+#include "DSMRayTracing/base/PixelVector.h"
 #include "DSMRayTracing/frame/Channels.h"
+#include "DSMRayTracing/look/PackedNormal.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -38,12 +40,15 @@ struct Tile : Channels
   std::uint64_t LightRays = 0;
   /// Premultiplied colors, summed over the samples so far, in order: what further samples are
   /// added to.
-  std::vector<glm::vec4> Sum;
+  PixelVector<glm::vec4> Sum;
   /// The same of channels on request, which are there only if they were asked for.
   std::vector<glm::vec4> AlbedoSum;
   std::vector<glm::vec3> NormalSum;
-  /// Light that neighbors' ambient occlusion adds to Sum in previews; empty: none.
-  std::vector<glm::vec3> Shared;
+  /// For LightFilter, if they were asked for (ChannelSet::Light): colors as in Sum, of light rays that nothing stops;
+  /// the squares of the parts of them that arrive; the normals that sample 0 meets.
+  PixelVector<glm::vec3> OpenSum;
+  PixelVector<float> ArrivingSquares;
+  PixelVector<PackedNormal> Normals;
 };
 
 /// Part of a frame on this rank: the tiles that it traced. Together the ranks have all tiles.

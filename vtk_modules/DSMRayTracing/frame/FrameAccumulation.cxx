@@ -76,22 +76,17 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
       }
     });
   FrameEntry::Check(records.Entries, request);
-  // A single sample is traced anew at rest; a last one of several stays.
-  const bool isPreview = request.IsPreview && wanted == 1;
   // Who takes all samples at once wants a single one traced again.
-  const bool isSame =
-    (wanted > 1 || (pace.Samples > 0 && !isPreview)) && this->IsSame(offers, digest);
-  const auto getBegunDigest = [&](bool preview) { return digest + (preview ? 1 : 0); };
+  const bool isSame = (wanted > 1 || pace.Samples > 0) && this->IsSame(offers, digest);
   if (!isSame)
   {
-    const bool isBegun = this->BegunSamples <= wanted &&
-      this->IsBegun(offers, getBegunDigest(isPreview || this->BegunSamples < wanted));
+    const bool isBegun = this->BegunSamples <= wanted && this->IsBegun(offers, digest);
     Frame begun = std::move(this->Begun);
     this->Restart();
     this->Begun = isBegun ? std::move(begun) : Frame();
   }
   this->Wanted = wanted;
-  this->Digest = isPreview ? 0 : digest;
+  this->Digest = digest;
   Result result = Result::Nothing;
   while (this->SamplesUnderWay > 0 || this->Samples < wanted)
   {
@@ -99,10 +94,9 @@ FrameAccumulation::Result FrameAccumulation::Trace(const Ranks& ranks,
     request.Samples = this->SamplesUnderWay > 0 ? this->SamplesUnderWay
       : this->Begun.Number > 0                  ? this->BegunSamples
                                                 : this->CountNext(pace);
-    request.IsPreview = isPreview || request.FirstSample + request.Samples < wanted;
     result = this->TraceOnce(ranks, scene, request, records);
     records.Entries.clear();
-    this->BegunDigest = this->Begun.Number > 0 ? getBegunDigest(request.IsPreview) : 0;
+    this->BegunDigest = this->Begun.Number > 0 ? digest : 0;
     if (result == Result::Aborted || (pace.Samples > 0 && !pace.GoesOn))
     {
       break;
@@ -148,6 +142,17 @@ FrameAccumulation::Result FrameAccumulation::TraceOnce(const Ranks& ranks, const
   this->Samples = request.FirstSample + request.Samples;
   this->LastSamples = request.Samples;
   return Result::Traced;
+}
+
+const Frame& FrameAccumulation::FilterLight(const Ranks& ranks, const glm::dmat4& worldToClip)
+{
+  // Another number is given to it with other samples.
+  if (this->Filtered.Number != this->Traced.Number)
+  {
+    this->Filtered = {};
+    this->Filtered = ranks.Renderer.FilterLight(ranks.Store, worldToClip, this->Traced);
+  }
+  return this->Filtered;
 }
 
 void FrameAccumulation::Restart()

@@ -8,6 +8,8 @@
 #include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 
+#include <glm/mat4x4.hpp>
+
 #include <cstdint>
 #include <vector>
 
@@ -68,8 +70,7 @@ public:
 
   /// Collective. `offers`: of all ranks, in rank order; when there is anything to trace, its first part takes no other
   /// agreement before. Traces the samples of the request that are missing to `wanted` for each pixel, or as
-  /// many as the pace allows: as a preview where others are to follow, or, with one sample in all, where the request
-  /// says so. `report`: see FrameRenderer::Records.
+  /// many as the pace allows. `report`: see FrameRenderer::Records.
   /// Returns what came of it, the same on every rank. Throws dsm::Error on every rank; then there is nothing to add to.
   Result Trace(const Ranks& ranks, const std::vector<Offer>& offers, const Scene& scene,
     FrameRequest request, int wanted, const Pace& pace, Report report);
@@ -78,6 +79,10 @@ public:
   const Frame& GetFrame() const { return this->Traced; }
   /// The next one, as far as it was traced before it was aborted; without tiles if there is none.
   const Frame& GetBegun() const { return this->Begun; }
+
+  /// Collective. The same frame, whose light is filtered (LightFilter); `worldToClip` as in its request, which asked
+  /// for the channels. Throws dsm::Error on every rank.
+  const Frame& FilterLight(const Ranks& ranks, const glm::dmat4& worldToClip);
 
   /// Returns whether the frame has all requested samples, or there is no frame; the same on every
   /// rank.
@@ -113,6 +118,7 @@ private:
   int CountNext(const Pace& pace) const;
 
   Frame Traced;
+  Frame Filtered;                ///< by FilterLight, the frame of that number
   Frame Begun;                   ///< aborted, or without tiles
   std::uint64_t BegunDigest = 0; ///< digest of its content
   int BegunSamples = 0;          ///< that its tiles have

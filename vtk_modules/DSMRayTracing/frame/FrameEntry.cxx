@@ -25,7 +25,7 @@ FrameEntry FrameEntry::Create(
 {
   const bool mayBegin = store.Visit([](auto& blocks) { return blocks.MayBeginFrame(); });
   const Digest digest{ GetSceneDigest(scene, request), request.FirstSample, request.Samples,
-    static_cast<std::int64_t>(request.Scheduling), request.IsPreview };
+    static_cast<std::int64_t>(request.Scheduling) };
   FrameEntry entry{ digest, store.IsSettled(), mayBegin, 0, 0, 0.0 };
   if (last && last->Width == request.Width && last->Height == request.Height &&
     last->TileSize == request.TileSize)

@@ -24,7 +24,6 @@ struct FrameEntry
     std::int64_t FirstSample;
     std::int64_t Samples;
     std::int64_t Scheduling;
-    std::int64_t IsPreview;
   };
 
   Digest Request;

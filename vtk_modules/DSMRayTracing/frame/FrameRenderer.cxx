@@ -96,6 +96,7 @@ FrameRenderer::FrameRenderer(dsm::Messenger& messenger)
   : Messenger(messenger)
   , Queue(messenger)
   , Stealing(messenger)
+  , Filter(messenger, this->Pool)
 {
 }
 
@@ -143,6 +144,12 @@ void FrameRenderer::Refine(dsm::BlockStore& store, const Scene& scene, const Fra
   frame.Tiles.clear();
   frame.Number = 0; // as long as it has no tiles
   this->RenderTiles(store, scene, request, nullptr, records, tiles, frame);
+}
+
+Frame FrameRenderer::FilterLight(
+  const dsm::BlockStore& store, const glm::dmat4& worldToClip, const Frame& frame)
+{
+  return this->Filter.Apply(store.GetSettings().Workers, worldToClip, frame);
 }
 
 void FrameRenderer::Read(

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameEntry.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/LightFilter.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
 #include "DSMRayTracing/scene/FieldReader.h"
 #include "DSMRayTracing/scene/Scene.h"
@@ -81,6 +82,10 @@ public:
   /// as aborted: Resume or Refine continue it.
   void SetWatch(std::function<bool(double part)> watch) { this->Watch = std::move(watch); }
 
+  /// Collective, between frames. Returns the frame with filtered light: see LightFilter::Apply.
+  Frame FilterLight(
+    const dsm::BlockStore& store, const glm::dmat4& worldToClip, const Frame& frame);
+
 private:
   void RenderLeft(dsm::BlockStore& store, const Scene& scene, const FrameRequest& request,
     std::vector<int> left, const Frame* last, const Records& records, Frame& frame);
@@ -91,6 +96,7 @@ private:
   CentralQueueScheduler Queue;
   WorkStealingScheduler Stealing;
   WorkerPool Pool;
+  LightFilter Filter;
   std::function<bool(double)> Watch;
 };
 

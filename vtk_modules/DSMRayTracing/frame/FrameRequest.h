@@ -29,10 +29,6 @@ struct FrameRequest
   /// pixel's center; the others are spread over the pixel.
   int FirstSample = 0;
   int Samples = 1;
-  /// Further samples, or a still picture, are to follow. Until then, pixels share the light of ambient occlusion's
-  /// rays with their neighbors in the picture that is shown, but not in the sums to which the other samples are
-  /// added. Such a picture depends on TileSize, too.
-  bool IsPreview = false;
   /// Surfaces that a pixel shows, front to back, which are kept apart; what is behind the last of them
   /// counts as part of it. More than one where something else is to be drawn between them.
   static constexpr int MaxLayers = 8;

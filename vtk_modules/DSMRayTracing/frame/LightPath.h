@@ -27,7 +27,7 @@ struct LightPath
   glm::dvec3 ToViewer{ 0.0 };
   SampleSequence Random;
   glm::vec4 Color{ 0.0f };
-  glm::vec3 Shared{ 0.0f }; ///< see PixelSample
+  glm::vec3 Open{ 0.0f }; ///< see PixelSample
   int LightRays = 0;
   PixelSample* Layers = nullptr; ///< gets the surfaces one by one, if not null
   /// The picture that the ray belongs to.

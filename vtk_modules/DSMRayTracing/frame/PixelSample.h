@@ -21,7 +21,6 @@ struct PixelSample
 
   glm::ivec2 Pixel{ 0 };
   glm::vec4 Color{ 0.0f };
-  glm::vec3 Shared{ 0.0f }; ///< light that neighbors' ambient occlusion adds to Color in previews
   /// Depth of the nearest surface, or of the position in media in front of it where half of the
   /// final coverage is reached.
   float Depth = 1.0f;
@@ -30,6 +29,7 @@ struct PixelSample
   /// Channels on request, set where any was asked for: see Channels.
   glm::vec4 Albedo{ 0.0f };
   glm::vec3 Normal{ 0.0f };
+  glm::vec3 Open{ 0.0f }; ///< Color, if nothing stopped those light rays that have noise
   std::int32_t Object = -1;
   float Integral = 0.0f; ///< of sample 0
 

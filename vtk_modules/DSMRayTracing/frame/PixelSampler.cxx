@@ -79,8 +79,8 @@ struct PixelSampler::Mirrored
   PixelSampler::Paths Paths;
 };
 
-PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
-  bool isPreview, ChannelSet channels)
+PixelSampler::PixelSampler(
+  const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, ChannelSet channels)
   : Finders(tracers.GetBeamFinders())
   , Surfaces(GetAll(tracers.Objects))
   , Media(tracers)
@@ -89,7 +89,7 @@ PixelSampler::PixelSampler(const SceneTracers& tracers, const Scene& scene, cons
   , LitMedia(tracers, scene)
   , World(scene)
   , Rays(rays)
-  , SharesAmbient(isPreview && scene.Transport.AmbientOcclusionSamples > 0)
+  , FindsOpenLight(channels.Has(ChannelSet::Light))
   , HasMoreChannels(channels.HasMore())
   , HasIntegral(channels.Has(ChannelSet::Integral))
 {
@@ -158,7 +158,7 @@ void PixelSampler::Sample(
   {
     const LightPath& path = paths[number];
     path.Layers->Color = path.Color;
-    path.Layers->Shared = path.Shared;
+    path.Layers->Open = path.Open;
     path.Layers->LightRays = path.LightRays;
     if (isIntegrated)
     {
@@ -290,6 +290,7 @@ void PixelSampler::AddPart(SceneBeam* beam, const Ray* rays, RayMask wanted,
         : opacity * this->ShowForDebugging(place);
       const glm::vec4 layer = weight * glm::vec4(color, opacity);
       path.Color += layer;
+      path.Open += glm::vec3(layer);
       if (path.Layers)
       {
         path.Layers->AddLayer(layer, this->Rays.GetDepth(place), true);
@@ -309,15 +310,15 @@ void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) 
     }
   }
   glm::vec3 colors[MaxRays];
-  glm::vec3 shared[MaxRays] = {};
-  this->Shade(seen, seenCount, bounces, colors, shared);
+  glm::vec3 open[MaxRays] = {};
+  this->Shade(seen, seenCount, bounces, colors, open);
   for (int number = 0; number < seenCount; ++number)
   {
     LightPath& path = *seen[number];
     const float weight = path.GetWeight();
     const glm::vec4 layer(weight * colors[number], weight);
     path.Color += layer;
-    path.Shared += weight * shared[number];
+    path.Open += weight * open[number];
     if (path.Layers)
     {
       if (this->HasMoreChannels)
@@ -330,7 +331,7 @@ void PixelSampler::AddSurfaces(LightPath* const* paths, int count, int bounces) 
 }
 
 void PixelSampler::Shade(
-  LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* shared) const
+  LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* open) const
 {
   if (this->World.View != DebugView::Off)
   {
@@ -340,7 +341,7 @@ void PixelSampler::Shade(
     }
     return;
   }
-  std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
+  const std::vector<ShadingPoint> points = this->Lighting.FindPoints(paths, count);
   const std::vector<LightSample> arriving =
     this->Lighting.FindArriving(paths, count, points.data());
   const std::vector<Light>& lights = this->World.Lights;
@@ -358,24 +359,27 @@ void PixelSampler::Shade(
   {
     colors[number] = shade(number);
   }
-  // Not of what is seen in mirrors, where pixels side by side may show places far apart.
-  if (this->SharesAmbient && count > 0 && paths[0]->Layers)
+  for (int number = 0; this->FindsOpenLight && number < count; ++number)
   {
-    this->Lighting.ShareAmbient(points);
-    for (int number = 0; number < count; ++number)
-    {
-      shared[number] =
-        (1.0f - paths[number]->Point.Surface->Reflectivity) * (shade(number) - colors[number]);
-    }
+    const ShadingPoint point = this->Lighting.GetPoint(*paths[number]);
+    // Hard shadows have no noise.
+    open[number] = rt::Shade(lights, *paths[number]->Point.Surface, point,
+      [&](std::size_t lamp)
+      {
+        SampleSequence random = paths[number]->Random;
+        return arriving.empty() || this->World.Transport.LightRadius > 0.0
+          ? lights[lamp].Sample(point.Position, random)
+          : arriving[MaxRays * lamp + number];
+      });
   }
   if (bounces > 0)
   {
-    this->AddReflections(paths, count, points.data(), bounces, colors);
+    this->AddReflections(paths, count, points.data(), bounces, colors, open);
   }
 }
 
 void PixelSampler::AddReflections(LightPath* const* paths, int count, const ShadingPoint* points,
-  int bounces, glm::vec3* colors) const
+  int bounces, glm::vec3* colors, glm::vec3* open) const
 {
   // A line is painted on the mirror.
   const auto getReflectivity = [&](int number)
@@ -418,11 +422,18 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
     },
     [](int) { return std::numeric_limits<double>::infinity(); });
   glm::vec4 seen[MaxRays];
-  ForEachRay(mirrors, [&](int number) { seen[number] = glm::vec4(0.0f); });
+  glm::vec3 openlySeen[MaxRays];
+  ForEachRay(mirrors,
+    [&](int number)
+    {
+      seen[number] = glm::vec4(0.0f);
+      openlySeen[number] = glm::vec3(0.0f);
+    });
   for (int index = 0; index < mirrored->Paths.GetCount(); ++index)
   {
     const LightPath& behind = mirrored->Paths[index];
     seen[behind.Index] = behind.Color;
+    openlySeen[behind.Index] = behind.Open;
     paths[behind.Index]->Random = behind.Random;
     paths[behind.Index]->LightRays += behind.LightRays;
   }
@@ -430,9 +441,11 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
     [&](int number)
     {
       const float reflectivity = getReflectivity(number);
-      const glm::vec3 reflection =
-        glm::vec3(seen[number]) + (1.0f - seen[number].w) * this->World.Transport.Background;
-      colors[number] = (1.0f - reflectivity) * colors[number] + reflectivity * reflection;
+      const glm::vec3 behind = (1.0f - seen[number].w) * this->World.Transport.Background;
+      const auto add = [&](const glm::vec3& reflection, glm::vec3& color)
+      { color = (1.0f - reflectivity) * color + reflectivity * (reflection + behind); };
+      add(glm::vec3(seen[number]), colors[number]);
+      add(openlySeen[number], open[number]);
     });
 }
 

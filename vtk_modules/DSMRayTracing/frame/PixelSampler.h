@@ -26,9 +26,9 @@ namespace rt
 class PixelSampler
 {
 public:
-  /// Keeps references. `isPreview`, `channels`: see FrameRequest.
+  /// Keeps references.
   PixelSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
-    bool isPreview = false, ChannelSet channels = {});
+    ChannelSet channels = {});
 
   /// Finds the beam of a box of pixels, for Sample. A beam that is not usable is still valid, but a
   /// smaller box may have a usable one.
@@ -75,11 +75,11 @@ private:
   /// Adds the light from the surfaces that the paths have reached.
   void AddSurfaces(LightPath* const* paths, int count, int bounces) const;
 
-  /// `shared`: see PixelSample; written only in previews.
+  /// `open`: see PixelSample; written only where channels are asked for.
   void Shade(
-    LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* shared) const;
+    LightPath* const* paths, int count, int bounces, glm::vec3* colors, glm::vec3* open) const;
   void AddReflections(LightPath* const* paths, int count, const ShadingPoint* points, int bounces,
-    glm::vec3* colors) const;
+    glm::vec3* colors, glm::vec3* open) const;
   glm::vec3 ShowForDebugging(const LightPath& path) const;
   /// Color for media, from the position that stands for them.
   glm::vec3 ShowForDebugging(const glm::dvec3& place) const;
@@ -92,7 +92,7 @@ private:
   MediumLighting LitMedia;
   const Scene& World;
   const PixelRays& Rays;
-  bool SharesAmbient;
+  bool FindsOpenLight; ///< true if ChannelSet::Light was asked for
   bool HasMoreChannels;
   bool HasIntegral; ///< true if ChannelSet::Integral was asked for
 };

@@ -32,9 +32,9 @@ void Add(ObjectDigest& digest, const LightTransport& transport)
 std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
 {
   ObjectDigest digest;
-  // The samples of a picture are added to one another, and its preview gives way to them.
-  const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, isPreview,
-    layers, limits, mediumCuts, channels, scheduling] = request;
+  // The samples of a picture are added to one another.
+  const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, layers,
+    limits, mediumCuts, channels, scheduling] = request;
   digest.AddAll(
     width, height, worldToClip, pixelSize, tileSize, layers, limits, mediumCuts, channels);
   Add(digest, scene.Transport);

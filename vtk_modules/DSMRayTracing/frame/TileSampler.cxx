@@ -48,6 +48,18 @@ void AddMoreChannels(const PixelSample& traced, int sample, Tile& tile)
   {
     tile.NormalSum[pixel] += traced.Normal;
   }
+  if (tile.Present.Has(ChannelSet::Light))
+  {
+    const float open = traced.Open.x + traced.Open.y + traced.Open.z;
+    const float part =
+      open > 0.0f ? (traced.Color.x + traced.Color.y + traced.Color.z) / open : 1.0f;
+    tile.OpenSum[pixel] += traced.Open;
+    tile.ArrivingSquares[pixel] += part * part;
+    if (sample == 0 && traced.Normal != glm::vec3(0.0f))
+    {
+      tile.Normals[pixel] = PackedNormal(traced.Normal);
+    }
+  }
   if (tile.Present.Has(ChannelSet::Object) && sample == 0)
   {
     tile.Object[pixel] = traced.Object;
@@ -63,7 +75,7 @@ void AddMoreChannels(const PixelSample& traced, int sample, Tile& tile)
 TileSampler::TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
   const FrameRequest& request, BeamHistory* beams)
   : Finders(tracers.GetBeamFinders())
-  , Pixels(tracers, scene, rays, request.IsPreview, request.Channels)
+  , Pixels(tracers, scene, rays, request.Channels)
   , Request(request)
   , Beams(beams)
 {
@@ -91,8 +103,11 @@ void TileSampler::Trace(Tile& tile) const
     tile.Reset(this->Request.Channels, tile.Layers * pixels);
     tile.Sum.assign(tile.Layers * pixels, glm::vec4(0.0f));
     tile.AlbedoSum.assign(tile.Present.Has(ChannelSet::Albedo) ? pixels : 0, glm::vec4(0.0f));
+    const bool isForFilter = tile.Present.Has(ChannelSet::Light);
     tile.NormalSum.assign(tile.Present.Has(ChannelSet::Normal) ? pixels : 0, glm::vec3(0.0f));
-    tile.Shared.assign(this->Request.IsPreview && tile.Layers == 1 ? pixels : 0, glm::vec3(0.0f));
+    tile.OpenSum.assign(isForFilter ? pixels : 0, glm::vec3(0.0f));
+    tile.ArrivingSquares.assign(isForFilter ? pixels : 0, 0.0f);
+    tile.Normals.assign(isForFilter ? pixels : 0, PackedNormal());
   }
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
@@ -115,16 +130,12 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
   const glm::vec4 scale = glm::vec4(tint, 1.0f) / samples;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
-    glm::vec4 sum = tile.Sum[pixel];
+    const glm::vec4& sum = tile.Sum[pixel];
     std::uint8_t* const color = &tile.Color[4 * pixel];
     if (sum == glm::vec4(0.0f))
     {
       std::fill_n(color, 4, std::uint8_t{ 0 });
       continue;
-    }
-    if (this->Request.IsPreview && !tile.Shared.empty())
-    {
-      sum += glm::vec4(tile.Shared[pixel], 0.0f);
     }
     ConvertSum(sum, scale, color);
   }
@@ -132,7 +143,7 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
   {
     ConvertSum(tile.AlbedoSum[pixel], glm::vec4(1.0f / samples), &tile.Albedo[4 * pixel]);
   }
-  for (std::size_t pixel = 0; pixel < tile.NormalSum.size(); ++pixel)
+  for (std::size_t pixel = 0; pixel < tile.Normal.size() / 3; ++pixel)
   {
     const float length = glm::length(tile.NormalSum[pixel]);
     for (int axis = 0; axis < 3; ++axis)
@@ -225,10 +236,6 @@ void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;
-    if (!tile.Shared.empty())
-    {
-      tile.Shared[pixel] += traced.Shared;
-    }
     // A pixel is as near as the nearest of its samples, so that a surface's antialiased
     // border still covers what is behind.
     tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);

@@ -11,7 +11,8 @@ namespace rt
 {
 
 /// The random numbers of one sample of one pixel: a function of pixel and sample alone, so that
-/// pictures do not depend on who traces what, and when.
+/// pictures do not depend on who traces what, and when. Sixteen pixels that fill a square have different ones (Keller
+/// and Heidrich, Interleaved Sampling, 2001): together, they know as much as sixteen samples of a pixel.
 class SampleSequence
 {
 public:
@@ -19,6 +20,7 @@ public:
   SampleSequence(int x, int y, int sample)
     : Sample(sample)
     , Pixel(Mix(static_cast<std::uint32_t>(x) + Mix(static_cast<std::uint32_t>(y) + 1u)))
+    , Stratum(GetStratum(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)))
   {
   }
 
@@ -35,18 +37,35 @@ public:
   }
 
   /// Returns the next number, uniform in [0, 1). For successive samples of a pixel, the n-th numbers fill the
-  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence); their starts
-  /// are pseudorandom from pixel to pixel and from number to number.
+  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence). So do the starts of any
+  /// 4 x 4 pixels; within their part of the interval they are pseudorandom.
   double Next()
   {
     constexpr double Steps[2] = { 0.4142135623730951, 0.7320508075688772 }; // of sqrt(2), sqrt(3)
     const std::uint32_t number = this->Numbers++;
-    const double start = Mix(this->Pixel + number * 0x9e3779b9u) * (1.0 / 4294967296.0);
+    // Another pixel for each pair of numbers.
+    const std::uint32_t stratum = this->Stratum ^ (Mix(number / 2 + 1) >> 28);
+    const std::uint32_t part = number % 2 == 0 ? stratum : Reverse(stratum);
+    const double within = Mix(this->Pixel + number * 0x9e3779b9u) * (1.0 / 4294967296.0);
+    const double start = (part + within) * (1.0 / 16.0);
     const double value = start + this->Sample * Steps[number % 2];
     return value - std::floor(value);
   }
 
 private:
+  /// Four bits in the opposite order.
+  static std::uint32_t Reverse(std::uint32_t bits)
+  {
+    return (bits & 1) << 3 | (bits & 2) << 1 | (bits & 4) >> 1 | (bits & 8) >> 3;
+  }
+
+  /// A number below 16, another for each of 4 x 4 pixels: the next ones to each other are far apart (Bayer's matrix).
+  static std::uint32_t GetStratum(std::uint32_t x, std::uint32_t y)
+  {
+    const std::uint32_t mixed = x ^ y;
+    return Reverse((mixed & 1) | (y & 1) << 1 | (mixed & 2) << 1 | (y & 2) << 2);
+  }
+
   /// A 32-bit integer finalizer with low bias (C. Wellons, hash-prospector).
   static std::uint32_t Mix(std::uint32_t value)
   {
@@ -60,6 +79,7 @@ private:
 
   int Sample = 0;
   std::uint32_t Pixel = 0;
+  std::uint32_t Stratum = 0;
   std::uint32_t Numbers = 0;
 };
 

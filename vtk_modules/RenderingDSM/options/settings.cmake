@@ -40,6 +40,13 @@ dsm_setting(SamplesPerPixel OWNER scene TYPE int DEFAULT 1 RANGE 1 65536 CHOICES
   TEXT "Number of samples per pixel in still pictures. More samples smooth edges, soft shadows and ambient occlusion.
     The slider offers some numbers. Any other whole number can be entered. While the view moves, each picture has 1
     sample per pixel.")
+dsm_setting(Denoise OWNER scene TYPE enum DEFAULT 1
+  ENTRIES DenoiseNever "Off" DenoiseIncomplete "While samples are missing" DenoiseAlways "Always"
+  LABEL "Denoise" PANEL default ENABLED light
+  TEXT "Filter the noise of soft shadows and ambient occlusion on surfaces. Colors, edges and hard shadows stay sharp.
+    While samples are missing: filter pictures while the view moves, and until they have all samples per pixel. Always:
+    also filter finished pictures, such as screenshots. Pictures of volumes, and pictures in which translucent surfaces
+    lie among other datasets, are not filtered.")
 dsm_setting(DebugView OWNER scene TYPE enum DEFAULT 0
   ENTRIES Off "Off" Owner "Owner of the data" TracingRank "Rank that traced" Brick "Brick" TileTime "Tile time"
     Normal "Normal" Depth "Depth" NewTiles "Tiles that changed hands" Misses "Misses"

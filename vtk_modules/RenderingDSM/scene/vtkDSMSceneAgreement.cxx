@@ -262,7 +262,10 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   {
     request.Channels.Value |= rt::ChannelSet::Integral;
   }
-  request.IsPreview = this->IsInteractive(); // also where a pixel gets only one sample
+  if (this->MayFilterLight(scene))
+  {
+    request.Channels.Value |= rt::LightFilter::Channels;
+  }
   if (this->IsReduced() && !scene.Media.empty())
   {
     scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
@@ -334,6 +337,10 @@ int vtkDSMScene::Internals::AgreeOnView(
   {
     request.Layers = other.IsApart != 0 ? rt::FrameRequest::MaxLayers : request.Layers;
     coarser = std::min<int>(coarser, other.Coarser);
+  }
+  if (request.Layers > 1)
+  {
+    request.Channels.Value &= ~rt::LightFilter::Channels;
   }
   scene.Transport.Background = view.Background.Lower;
   const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
@@ -493,7 +500,10 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   {
     return;
   }
-  const rt::Frame& frame = this->Eye->Accumulation.GetFrame();
+  const bool filtersLight =
+    this->FiltersLight(request) && result != rt::FrameAccumulation::Result::Aborted;
+  const rt::Frame& frame =
+    filtersLight ? this->FilterLight(request.WorldToClip) : this->Eye->Accumulation.GetFrame();
   const bool hasEdges =
     messenger.GetSize() > 1 && scene.IsOpaque() && this->Eye->Accumulation.GetMostSamples() > 1;
   if (result == rt::FrameAccumulation::Result::Aborted)
@@ -509,16 +519,22 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
   }
   if (this->Image)
   {
-    this->FillImage(rt::GatherFrame(messenger, frame));
+    rt::Picture gathered = rt::GatherFrame(messenger, this->Eye->Accumulation.GetFrame());
+    if (filtersLight)
+    {
+      gathered.Color = rt::GatherFrame(messenger, frame).Color;
+    }
+    this->FillImage(gathered);
     return;
   }
-  const bool isNew = result == rt::FrameAccumulation::Result::Traced;
-  if (!isNew)
+  const bool isAssembled =
+    result == rt::FrameAccumulation::Result::Traced && !request.Channels.Has(rt::ChannelSet::Light);
+  if (!isAssembled)
   {
     picture = this->Delivery.Assemble(frame);
   }
   picture = this->Delivery.Gather(messenger, frame, std::move(picture), hasEdges);
-  isOver = (isNew || this->Delivery.NeedsRanks(hasEdges)) && request.Layers == 1 &&
+  isOver = (isAssembled || this->Delivery.NeedsRanks(hasEdges)) && request.Layers == 1 &&
     !isAny(&View::HasNotes);
   this->DrawPicture(
     std::move(picture), request, projection, scene.View, request.PixelSize == 1, hasEdges);

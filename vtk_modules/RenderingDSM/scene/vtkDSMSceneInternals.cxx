@@ -301,6 +301,32 @@ bool vtkDSMScene::Internals::IsInteractive() const
   return window && (this->IsInteracting || window->GetDesiredUpdateRate() >= InteractiveRate);
 }
 
+/// Returns whether any picture of what the window shows may be filtered.
+bool vtkDSMScene::Internals::MayFilterLight(const rt::Scene& scene) const
+{
+  const int choice = this->Light->GetDenoise();
+  return rt::LightFilter::IsNoisy(scene) &&
+    (choice == vtkDSMLightOptions::DenoiseAlways ||
+      (choice == vtkDSMLightOptions::DenoiseIncomplete && !this->Image &&
+        (this->SamplesPerFrame > 0 || this->IsInteractive())));
+}
+
+/// Returns whether the last frame, of that request, is to be filtered; the same on every rank.
+bool vtkDSMScene::Internals::FiltersLight(const rt::FrameRequest& request) const
+{
+  return request.Channels.Has(rt::ChannelSet::Light) &&
+    (this->Light->GetDenoise() == vtkDSMLightOptions::DenoiseAlways || this->IsInteractive() ||
+      !this->Eye->Accumulation.IsComplete());
+}
+
+/// Collective. Returns the last whole frame, of that camera, with filtered light.
+const rt::Frame& vtkDSMScene::Internals::FilterLight(const glm::dmat4& worldToClip)
+{
+  return this->Eye->Accumulation.FilterLight(
+    { this->Group->GetMessenger(), this->Group->GetFrameRenderer(), this->Group->GetStore() },
+    worldToClip);
+}
+
 bool vtkDSMScene::Internals::IsReduced() const
 {
   return this->InteractiveReduction > 0 && this->IsInteractive();

@@ -4,6 +4,7 @@
 
 #include "DSMCore/base/FirstFailure.h"
 #include "DSMRayTracing/frame/FrameAccumulation.h"
+#include "DSMRayTracing/frame/LightFilter.h"
 #include "DSMRayTracing/frame/MovingDetail.h"
 #include "DSMRayTracing/frame/Resolution.h"
 #include "DSMVolumeFiles/cache/ReadAhead.h"
@@ -148,6 +149,9 @@ private:
   void KeepProp(const rt::Scene& scene);
   void LimitRays(rt::FrameRequest& request, bool cutsMedia);
   bool IsInteractive() const;
+  bool MayFilterLight(const rt::Scene& scene) const;
+  bool FiltersLight(const rt::FrameRequest& request) const;
+  const rt::Frame& FilterLight(const glm::dmat4& worldToClip);
   rt::FrameAccumulation::Pace GetPace() const;
   bool HasNotes() const;
   bool IsReduced() const;

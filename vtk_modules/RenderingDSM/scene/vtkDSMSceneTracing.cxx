@@ -141,7 +141,8 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
   vtkRenderWindow* window = this->Image ? nullptr : this->Renderer->GetRenderWindow();
   const int wanted = this->Light->GetSamplesPerPixel();
   const rt::FrameAccumulation::Pace pace = this->GetPace();
-  const bool draws = !this->Image && !this->GoesOn;
+  const bool draws = !this->Image && !this->GoesOn &&
+    !task.Whole.Channels.Has(rt::ChannelSet::Light); // else it may be filtered first
   const auto report = [&](const rt::Frame& frame)
   {
     task.Picture = draws && !frame.IsAborted ? this->Delivery.Assemble(frame) : rt::Picture();
@@ -169,7 +170,6 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
           {
             this->Members.AddTo(task.Scene, next->Coarser);
           }
-          task.Request.IsPreview = isDraft || task.Whole.IsPreview;
           task.Scene.Transport.MediumErrors =
             isDraft ? rt::Resolution::MediumErrors : task.MediumErrors;
           return this->Eye->Accumulation.CreateOffer(store, task.Scene, task.Request, wanted, pace);
@@ -276,7 +276,10 @@ rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bo
   const auto get = [&](const rt::Frame& frame)
   { return this->Delivery.Gather(messenger, frame, this->Delivery.Assemble(frame), hasEdges); };
   const rt::Frame& begun = this->Eye->Accumulation.GetBegun();
-  rt::Picture picture = get(this->Eye->Accumulation.GetFrame());
+  const rt::Frame& last = this->Eye->Accumulation.GetFrame();
+  rt::Picture picture =
+    get(last.Channels.Has(rt::ChannelSet::Light) ? this->FilterLight(this->Eye->LastWorldToClip)
+                                                 : last);
   if (begun.Number > 0)
   {
     double middle[3];
