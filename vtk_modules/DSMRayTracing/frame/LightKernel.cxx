@@ -43,7 +43,7 @@ private:
   /// Pixels, for each step, that a place may lie beside another's plane.
   static constexpr float Flatness = 2.0f;
   /// Standard deviations at which light counts as another's, and what is added to them.
-  static constexpr float Deviations = 3.0f;
+  static constexpr float Deviations = 2.0f;
   static constexpr float LeastDifference = 0.02f;
 
   static HWY_INLINE Vector Set(float value) { return hn::Set(D(), value); }

@@ -11,8 +11,8 @@ namespace rt
 {
 
 /// The random numbers of one sample of one pixel: a function of pixel and sample alone, so that
-/// pictures do not depend on who traces what, and when. Sixteen pixels that fill a square have different ones (Keller
-/// and Heidrich, Interleaved Sampling, 2001): together, they know as much as sixteen samples of a pixel.
+/// pictures do not depend on who traces what, and when. Squares of sixteen pixels have different ones (Keller and
+/// Heidrich, Interleaved Sampling, 2001): together, they know as much as sixteen samples of a pixel.
 class SampleSequence
 {
 public:
@@ -20,6 +20,7 @@ public:
   SampleSequence(int x, int y, int sample)
     : Sample(sample)
     , Pixel(Mix(static_cast<std::uint32_t>(x) + Mix(static_cast<std::uint32_t>(y) + 1u)))
+    , Square(Mix(static_cast<std::uint32_t>(x) / 4 + Mix(static_cast<std::uint32_t>(y) / 4 + 1u)))
     , Stratum(GetStratum(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)))
   {
   }
@@ -37,14 +38,15 @@ public:
   }
 
   /// Returns the next number, uniform in [0, 1). For successive samples of a pixel, the n-th numbers fill the
-  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence). So do the starts of any
-  /// 4 x 4 pixels; within their part of the interval they are pseudorandom.
+  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence). So do the starts of 4 x 4
+  /// pixels; within their part of the interval they are pseudorandom.
   double Next()
   {
     constexpr double Steps[2] = { 0.4142135623730951, 0.7320508075688772 }; // of sqrt(2), sqrt(3)
     const std::uint32_t number = this->Numbers++;
-    // Another pixel for each pair of numbers.
-    const std::uint32_t stratum = this->Stratum ^ (Mix(number / 2 + 1) >> 28);
+    // The pixels change places from square to square, and from pair to pair of numbers: patterns would be seen.
+    const std::uint32_t stratum =
+      this->Stratum ^ (Mix(this->Square + (number / 2) * 0x9e3779b9u) >> 28);
     const std::uint32_t part = number % 2 == 0 ? stratum : Reverse(stratum);
     const double within = Mix(this->Pixel + number * 0x9e3779b9u) * (1.0 / 4294967296.0);
     const double start = (part + within) * (1.0 / 16.0);
@@ -79,6 +81,7 @@ private:
 
   int Sample = 0;
   std::uint32_t Pixel = 0;
+  std::uint32_t Square = 0;
   std::uint32_t Stratum = 0;
   std::uint32_t Numbers = 0;
 };
