@@ -207,10 +207,9 @@ TEST_F(VolumeMapper, RefinesThePicturesOfBothEyes)
   }
   EXPECT_FALSE(this->Scene->IsRefined());
   int advances = 0;
-  int looks = 0;
   while (!this->Scene->IsRefined() && advances < 1000)
   {
-    EXPECT_TRUE(this->Scene->Advance([&] { return ++looks % 7 != 0; }));
+    EXPECT_TRUE(this->AdvanceShortly());
     ++advances;
   }
   EXPECT_GT(advances, 2) << "it was interrupted";
@@ -220,6 +219,26 @@ TEST_F(VolumeMapper, RefinesThePicturesOfBothEyes)
   vtkNew<vtkUnsignedCharArray> refined;
   this->Window->GetPixelData(0, 0, Size - 1, Size - 1, 0, refined);
   EXPECT_EQ(GetDifference(refined, whole), 0.0);
+}
+
+TEST_F(VolumeMapper, ContinuesWithDraftsThatWereInterrupted)
+{
+  this->Renderer->AddVolume(this->Volume);
+  this->Window->Render();
+  this->Mapper->GetLightOptions()->SetAmbientOcclusionSamples(1000); // takes long
+  this->Scene->SetSamplesPerFrame(1);
+  this->Scene->SetShowsDrafts(true);
+  this->Scene->SetSecondsPerFrame(1e-6);
+  this->Renderer->GetActiveCamera()->Azimuth(4.0);
+  this->Window->Render();
+  EXPECT_FALSE(this->Scene->IsRefined());
+  int advances = 0;
+  for (; !this->Scene->IsRefined() && advances < 1000; ++advances)
+  {
+    EXPECT_TRUE(this->AdvanceShortly());
+  }
+  EXPECT_TRUE(this->Scene->IsRefined());
+  EXPECT_GT(advances, 2) << "they were interrupted";
 }
 
 TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
@@ -237,12 +256,11 @@ TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
   EXPECT_TRUE(this->Scene->HasBegun());
 
   // Between frames, as often as there is time.
-  int looks = 0;
   int advances = 0;
   double part = 0.0;
   while (!this->Scene->IsRefined() && advances < 1000)
   {
-    EXPECT_TRUE(this->Scene->Advance([&] { return ++looks % 3 != 0; }));
+    EXPECT_TRUE(this->AdvanceShortly());
     EXPECT_GE(this->Scene->GetRefinedPart(), part);
     part = this->Scene->GetRefinedPart();
     EXPECT_EQ(part == 1.0, this->Scene->IsRefined());

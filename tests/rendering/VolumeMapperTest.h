@@ -26,6 +26,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <vector>
@@ -87,6 +88,13 @@ protected:
     this->Renderer->GetActiveCamera()->SetPosition(20.0, 30.0, 60.0);
     this->Renderer->GetActiveCamera()->SetFocalPoint(0.0, 0.0, 0.0);
     this->Renderer->ResetCameraClippingRange(-16.0, 16.0, -16.0, 16.0, -16.0, 16.0);
+  }
+
+  /// Advances the scene for a few milliseconds.
+  bool AdvanceShortly()
+  {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(3);
+    return this->Scene->Advance([=] { return std::chrono::steady_clock::now() < end; });
   }
 
   /// Draws the ball with another mapper of the volume; returns the colors of the window's pixels.

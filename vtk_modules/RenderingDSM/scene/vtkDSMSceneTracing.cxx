@@ -211,7 +211,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
     {
       this->NoteAborted(task, *next);
     }
-    if (isDraft)
+    if (isDraft && result != Result::Aborted)
     {
       this->Eye->Accumulation.Postpone();
     }
