@@ -369,7 +369,8 @@ bool LightFilter::IsNoisy(const Scene& scene)
 {
   const LightTransport& light = scene.Transport;
   const bool areSoft = (light.Shadows || light.FaintShadows) && light.LightRadius > 0.0;
-  return scene.View == DebugView::Off && (areSoft || light.AmbientOcclusionSamples > 0);
+  return !scene.Objects.empty() && scene.View == DebugView::Off &&
+    (areSoft || light.AmbientOcclusionSamples > 0);
 }
 
 Frame LightFilter::Apply(int workers, const glm::dmat4& worldToClip, const Frame& frame)

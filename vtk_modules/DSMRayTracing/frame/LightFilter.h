@@ -38,7 +38,7 @@ public:
   {
   }
 
-  /// Collective; communication thread, between frames. `frame`: this rank's tiles of a frame of which none is left, of
+  /// Collective; communication thread, between frames. `frame`: this rank's tiles of a frame, of
   /// one layer, with these channels; `worldToClip`: as in its request. Returns colors and depths of some rows, the
   /// filtered ones, as tiles: together, the ranks have the picture, the same bits on any number of them. `workers`
   /// threads work at a time. Throws dsm::Error on every rank.

@@ -286,7 +286,12 @@ rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bo
     vtkBoundingBox(this->Bounds).GetCenter(middle);
     picture = rt::Stopgap::Move(
       picture, this->Eye->LastWorldToClip, request, { middle[0], middle[1], middle[2] });
-    rt::Stopgap::Cover(begun, get(begun), picture);
+    rt::Stopgap::Cover(begun,
+      get(begun.Channels.Has(rt::ChannelSet::Light)
+          ? this->Group->GetFrameRenderer().FilterLight(
+              this->Group->GetStore(), request.WorldToClip, begun)
+          : begun),
+      picture);
   }
   return picture;
 }
