@@ -38,8 +38,8 @@ public:
   }
 
   /// Returns the next number, uniform in [0, 1). For successive samples of a pixel, the n-th numbers fill the
-  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence). So do the starts of 4 x 4
-  /// pixels; within their part of the interval they are pseudorandom.
+  /// interval evenly, and the n-th pairs of numbers the square (steps of Richtmyer's sequence). So do the starts of
+  /// 4 x 4 pixels; within their part of the interval they are pseudorandom.
   double Next()
   {
     constexpr double Steps[2] = { 0.4142135623730951, 0.7320508075688772 }; // of sqrt(2), sqrt(3)
