@@ -143,7 +143,7 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
   {
     ConvertSum(tile.AlbedoSum[pixel], glm::vec4(1.0f / samples), &tile.Albedo[4 * pixel]);
   }
-  for (std::size_t pixel = 0; pixel < tile.Normal.size() / 3; ++pixel)
+  for (std::size_t pixel = 0; pixel < tile.NormalSum.size(); ++pixel)
   {
     const float length = glm::length(tile.NormalSum[pixel]);
     for (int axis = 0; axis < 3; ++axis)
