@@ -46,7 +46,11 @@ def get_coarser():
 
 def move(place):
     place_camera(view, place)
-    view.SMProxy.InteractiveRender()
+    there = list(view.CameraPosition)
+    # From elsewhere: what a still picture has shown is not traced again.
+    for position in ([-value for value in there], there):
+        view.CameraPosition = position
+        view.SMProxy.InteractiveRender()
     return get_coarser()
 
 
