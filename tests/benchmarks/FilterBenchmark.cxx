@@ -1,52 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterBenchmark.h"
 
+#include "tests/support/PictureError.h"
+
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/LightFilter.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
 namespace
 {
 
-/// Pixels that two pictures show nearly alike, or all.
-std::vector<std::size_t> FindAlike(const rt::Picture& one, const rt::Picture& other, int difference)
+/// Those of the pixels in which a picture shows anything.
+std::vector<std::size_t> FindCovered(const rt::Picture& picture, std::vector<std::size_t> pixels)
 {
-  std::vector<std::size_t> alike;
-  for (std::size_t pixel = 0; pixel < one.Depth.size(); ++pixel)
-  {
-    int most = 0;
-    for (std::size_t value = 4 * pixel; value < 4 * pixel + 4; ++value)
-    {
-      most = std::max(most, std::abs(one.Color[value] - other.Color[value]));
-    }
-    if (one.Color[4 * pixel + 3] > 0 && most <= difference)
-    {
-      alike.push_back(pixel);
-    }
-  }
-  return alike;
-}
-
-double GetError(
-  const rt::Picture& picture, const rt::Picture& exact, const std::vector<std::size_t>& pixels)
-{
-  double sum = 0.0;
-  for (const std::size_t pixel : pixels)
-  {
-    for (std::size_t value = 4 * pixel; value < 4 * pixel + 3; ++value)
-    {
-      const double difference = picture.Color[value] - static_cast<double>(exact.Color[value]);
-      sum += difference * difference;
-    }
-  }
-  return std::sqrt(sum / (3.0 * static_cast<double>(std::max<std::size_t>(pixels.size(), 1))));
+  const auto isEmpty = [&](std::size_t pixel) { return picture.Color[4 * pixel + 3] == 0; };
+  pixels.erase(std::remove_if(pixels.begin(), pixels.end(), isEmpty), pixels.end());
+  return pixels;
 }
 
 } // namespace
@@ -84,8 +58,10 @@ nlohmann::ordered_json BenchmarkFilter(dsm::Messenger& messenger, dsm::BlockStor
   }
   rt::Scene unlit = scene;
   unlit.Transport = {};
-  const auto inner = FindAlike(gather(trace(unlit, 1, false)), gather(trace(unlit, 64, false)), 2);
-  const auto all = FindAlike(plain, plain, 0);
+  const rt::Picture one = gather(trace(unlit, 1, false));
+  const rt::Picture many = gather(trace(unlit, 64, false));
+  const auto inner = FindCovered(one, FindAlike(one, many, 2));
+  const auto all = FindCovered(plain, FindAlike(plain, plain, 0));
   const rt::Picture sixteen = gather(trace(scene, 16, false));
   const rt::Picture exact = gather(trace(scene, 256, false));
   const auto compare = [&](const std::vector<std::size_t>& pixels)

@@ -59,8 +59,8 @@ public:
     return given ? std::atoi(given) : usual;
   }
 
-  /// Aborts `wanted` frames. Between them, the view shows another look, or gets the samples that are missing: its
-  /// picture is then that of a frame that nobody aborted. Returns how many such pictures were compared.
+  /// Aborts `wanted` frames. Between them, the view shows another look, or gets the samples that are missing. Then its
+  /// picture must equal that of a frame without aborts. Returns how many pictures were compared.
   int Abort(int wanted, unsigned seed)
   {
     std::mt19937 random(seed); // the same on all ranks

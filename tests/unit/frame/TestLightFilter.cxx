@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/FunctionVolume.h"
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/PictureError.h"
 #include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
 
@@ -18,7 +19,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <utility>
 #include <vector>
@@ -84,36 +84,7 @@ protected:
     const rt::Picture one = this->Trace(1, false);
     const rt::Picture many = this->Trace(64, false);
     this->World.Transport = noisy;
-    std::vector<std::size_t> smooth;
-    for (std::size_t pixel = 0; pixel < one.Depth.size(); ++pixel)
-    {
-      int difference = 0;
-      for (std::size_t value = 4 * pixel; value < 4 * pixel + 4; ++value)
-      {
-        difference = std::max(difference, std::abs(one.Color[value] - many.Color[value]));
-      }
-      if (difference <= 2)
-      {
-        smooth.push_back(pixel);
-      }
-    }
-    return smooth;
-  }
-
-  /// The root of the mean square of differences, in 255ths, of such pixels.
-  static double GetError(
-    const rt::Picture& picture, const rt::Picture& exact, const std::vector<std::size_t>& pixels)
-  {
-    double sum = 0.0;
-    for (const std::size_t pixel : pixels)
-    {
-      for (std::size_t value = 4 * pixel; value < 4 * pixel + 3; ++value)
-      {
-        const double difference = picture.Color[value] - static_cast<double>(exact.Color[value]);
-        sum += difference * difference;
-      }
-    }
-    return std::sqrt(sum / (3.0 * static_cast<double>(pixels.size())));
+    return FindAlike(one, many, 2);
   }
 
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };

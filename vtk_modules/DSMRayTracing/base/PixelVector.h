@@ -10,16 +10,12 @@
 namespace rt
 {
 
-/// Where the values of tiles are.
-struct PixelHeap
+/// The heap of the process for values of tiles. Not destroyed: frames of static objects may outlive it otherwise.
+inline dsm::BlockHeap& GetPixelHeap()
 {
-  /// The one of the process. Not destroyed: frames of static objects may outlive it otherwise.
-  static dsm::BlockHeap& GetShared()
-  {
-    static auto* const heap = new dsm::BlockHeap;
-    return *heap;
-  }
-};
+  static auto* const heap = new dsm::BlockHeap;
+  return *heap;
+}
 
 /// Takes memory from a heap that keeps its pages: tiles of each frame take the place of others, and new pages take
 /// longer than to trace simple pixels. Any thread.
@@ -36,11 +32,11 @@ struct PixelAllocator
 
   T* allocate(std::size_t count)
   {
-    return reinterpret_cast<T*>(GetHeap().Allocate(count * sizeof(T)));
+    return reinterpret_cast<T*>(GetPixelHeap().Allocate(count * sizeof(T)));
   }
   void deallocate(T* memory, std::size_t count) noexcept
   {
-    GetHeap().Free(reinterpret_cast<std::byte*>(memory), count * sizeof(T));
+    GetPixelHeap().Free(reinterpret_cast<std::byte*>(memory), count * sizeof(T));
   }
 
   template <class Other>
@@ -53,9 +49,6 @@ struct PixelAllocator
   {
     return false;
   }
-
-private:
-  static dsm::BlockHeap& GetHeap() { return PixelHeap::GetShared(); }
 };
 
 /// Values of pixels of a tile.

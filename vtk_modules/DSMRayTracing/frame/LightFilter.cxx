@@ -4,6 +4,7 @@
 #include "DSMCore/base/FunctionRef.h"
 #include "DSMCore/publish/FragmentStream.h"
 #include "DSMCore/publish/Publication.h"
+#include "DSMRayTracing/look/PackedColor.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -27,7 +28,7 @@ namespace rt
 namespace
 {
 
-/// Of a pixel, what the filter needs: plain, for messages.
+/// Values of a pixel that the filter needs: plain, for messages.
 struct NoisyPixel
 {
   glm::vec4 Color;     ///< premultiplied
@@ -286,11 +287,6 @@ private:
     return glm::dvec3(world) / world.w;
   }
 
-  static std::uint8_t ToByte(float value)
-  {
-    return static_cast<std::uint8_t>(255.0f * std::clamp(value, 0.0f, 1.0f) + 0.5f);
-  }
-
   /// The place of a pixel's color in the result.
   std::uint8_t* GetColor(int x, int row)
   {
@@ -307,7 +303,7 @@ private:
       std::uint8_t* const color = this->GetColor(x, row);
       for (int channel = 0; channel < 4; ++channel)
       {
-        color[channel] = ToByte(pixel.Color[channel]);
+        color[channel] = PackedColor::ToByte(pixel.Color[channel]);
       }
       this->Result.Depth[static_cast<std::size_t>(color - this->Result.Color.data()) / 4] =
         pixel.Depth;
@@ -347,7 +343,7 @@ private:
       {
         if (weights[x] > 0.0f)
         {
-          this->GetColor(x, row)[channel] = ToByte(open[x] * parts[x]);
+          this->GetColor(x, row)[channel] = PackedColor::ToByte(open[x] * parts[x]);
         }
       }
     }

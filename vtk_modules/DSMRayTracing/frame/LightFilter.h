@@ -18,9 +18,9 @@ namespace rt
 /// Takes the noise of soft shadows and ambient occlusion out of a picture of few samples. It filters the part of a
 /// pixel's light that arrives: the color over that without shadows and occlusion. Hard shadows have no noise, and count
 /// as colors. So edges, colors and shading stay as they are. Passes over pixels farther and farther apart (Dammertz et
-/// al., Edge-Avoiding A-Trous Wavelet Transform, 2010) take those which are alike in normal, plane
-/// and light. The light's variance says how much it may differ (Schied et al., Spatiotemporal Variance-Guided
-/// Filtering, 2017). Light of media is not filtered.
+/// al., Edge-Avoiding A-Trous Wavelet Transform, 2010) take those which are alike in normal, plane and light. The
+/// light's variance says how much it may differ (Schied et al., Spatiotemporal Variance-Guided Filtering, 2017). Light
+/// of media is not filtered.
 class LightFilter
 {
 public:
@@ -30,7 +30,7 @@ public:
   /// Channels that FrameRequest must ask for.
   static constexpr std::uint32_t Channels = ChannelSet::Light;
 
-  /// Keeps references. Its memory, at most about 50 MiB for a picture that is 1920 pixels wide, stays for the next
+  /// Keeps references. Its memory, at most about 85 MiB for a picture that is 1920 pixels wide, stays for the next
   /// picture.
   LightFilter(dsm::Messenger& messenger, WorkerPool& pool)
     : Messenger(messenger)
@@ -38,8 +38,8 @@ public:
   {
   }
 
-  /// Collective; communication thread, between frames. `frame`: this rank's tiles of a frame, of
-  /// one layer, with these channels; `worldToClip`: as in its request. Returns colors and depths of some rows, the
+  /// Collective; communication thread, between frames. `frame`: this rank's tiles of a frame of one layer, with these
+  /// channels; tiles may be left. `worldToClip`: as in its request. Returns colors and depths of some rows, the
   /// filtered ones, as tiles: together, the ranks have the picture, the same bits on any number of them. `workers`
   /// threads work at a time. Throws dsm::Error on every rank.
   Frame Apply(int workers, const glm::dmat4& worldToClip, const Frame& frame);

@@ -36,7 +36,7 @@ private:
   using Planes = LightPlanes;
 
   static constexpr int Reach = 2;
-  /// Of the cubic B-spline, by distance.
+  /// Weights of the cubic B-spline, by distance.
   static constexpr float Spline[Reach + 1] = { 0.375f, 0.25f, 0.0625f };
   /// Cosine of the angle between normals from which pixels have nothing in common.
   static constexpr float LeastCosine = 0.7f;

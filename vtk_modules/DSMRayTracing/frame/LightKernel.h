@@ -50,10 +50,10 @@ public:
     this->Rows = rows;
     this->Stride = static_cast<std::size_t>(width) + 2 * Room;
     const std::size_t count = this->Stride * static_cast<std::size_t>(rows);
+    // Memory is kept: new pages take longer than the filter.
     for (auto& plane : this->Planes)
     {
-      plane.resize(std::max(
-        plane.size(), count)); // memory stays as it is: new pages take longer than the filter
+      plane.resize(std::max(plane.size(), count));
     }
     std::fill_n(this->Planes[Weight].begin(), count, 0.0f);
   }

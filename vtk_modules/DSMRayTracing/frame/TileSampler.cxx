@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/TileSampler.h"
 
+#include "DSMRayTracing/look/PackedColor.h"
+
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
@@ -24,8 +26,7 @@ constexpr int SmallestBeamEdge = PixelSampler::BlockEdge;
 {
   for (int channel = 0; channel < 4; ++channel)
   {
-    const float value = std::clamp(scale[channel] * sum[channel], 0.0f, 1.0f);
-    color[channel] = static_cast<std::uint8_t>(255.0f * value + 0.5f);
+    color[channel] = PackedColor::ToByte(scale[channel] * sum[channel]);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -18,6 +19,11 @@ struct PackedColor
     std::uint32_t packed;
     std::memcpy(&packed, rgba, sizeof(packed));
     return packed;
+  }
+  /// The byte of a red, green, blue or opacity, which is clamped to [0, 1].
+  static std::uint8_t ToByte(float value)
+  {
+    return static_cast<std::uint8_t>(255.0f * std::clamp(value, 0.0f, 1.0f) + 0.5f);
   }
   /// Each in [0, 1].
   static glm::vec4 Get(std::uint32_t packed)

@@ -3,6 +3,8 @@
 
 #include "vtkDSMStatistics.h"
 
+#include "DSMRayTracing/look/PackedColor.h"
+
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkRenderer.h"
@@ -52,8 +54,7 @@ struct Canvas
     const std::size_t pixel = static_cast<std::size_t>(y) * this->Picture.Width + x;
     for (int channel = 0; channel < 3; ++channel)
     {
-      this->Picture.Color[4 * pixel + channel] =
-        static_cast<std::uint8_t>(255.0f * glm::clamp(color[channel], 0.0f, 1.0f) + 0.5f);
+      this->Picture.Color[4 * pixel + channel] = rt::PackedColor::ToByte(color[channel]);
     }
     this->Picture.Color[4 * pixel + 3] = 255;
     this->Picture.Depth[pixel] = 0.0f;

@@ -275,11 +275,12 @@ rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bo
   dsm::Messenger& messenger = this->Group->GetMessenger();
   const auto get = [&](const rt::Frame& frame)
   { return this->Delivery.Gather(messenger, frame, this->Delivery.Assemble(frame), hasEdges); };
+  const auto isForFilter = [](const rt::Frame& frame)
+  { return frame.Channels.Has(rt::ChannelSet::Light); };
   const rt::Frame& begun = this->Eye->Accumulation.GetBegun();
   const rt::Frame& last = this->Eye->Accumulation.GetFrame();
   rt::Picture picture =
-    get(last.Channels.Has(rt::ChannelSet::Light) ? this->FilterLight(this->Eye->LastWorldToClip)
-                                                 : last);
+    get(isForFilter(last) ? this->FilterLight(this->Eye->LastWorldToClip) : last);
   if (begun.Number > 0)
   {
     double middle[3];
@@ -287,10 +288,9 @@ rt::Picture vtkDSMScene::Internals::FillGaps(const rt::FrameRequest& request, bo
     picture = rt::Stopgap::Move(
       picture, this->Eye->LastWorldToClip, request, { middle[0], middle[1], middle[2] });
     rt::Stopgap::Cover(begun,
-      get(begun.Channels.Has(rt::ChannelSet::Light)
-          ? this->Group->GetFrameRenderer().FilterLight(
-              this->Group->GetStore(), request.WorldToClip, begun)
-          : begun),
+      get(isForFilter(begun) ? this->Group->GetFrameRenderer().FilterLight(
+                                 this->Group->GetStore(), request.WorldToClip, begun)
+                             : begun),
       picture);
   }
   return picture;
