@@ -301,14 +301,16 @@ bool vtkDSMScene::Internals::IsInteractive() const
   return window && (this->IsInteracting || window->GetDesiredUpdateRate() >= InteractiveRate);
 }
 
-/// Returns whether any picture of what the window shows may be filtered.
+/// Returns whether any picture of what the window shows may be filtered. A saved picture has the channels of those that
+/// the window shows, so that their samples need not be traced again.
 bool vtkDSMScene::Internals::MayFilterLight(const rt::Scene& scene) const
 {
   const int choice = this->Light->GetDenoise();
   return rt::LightFilter::IsNoisy(scene) &&
     (choice == vtkDSMLightOptions::DenoiseAlways ||
       (choice == vtkDSMLightOptions::DenoiseIncomplete && !this->Image &&
-        (this->SamplesPerFrame > 0 || this->IsInteractive())));
+        (this->SamplesPerFrame > 0 || this->IsInteractive() ||
+          this->Eye->Accumulation.GetFrame().Channels.Has(rt::ChannelSet::Light))));
 }
 
 /// Returns whether the last frame, of that request, is to be filtered; the same on every rank.
