@@ -77,6 +77,7 @@ rt::FrameRequest CreateRequest(const VolumeOptions& options, const Camera& camer
   request.Height = options.Height;
   request.TileSize = options.TileSize;
   request.Samples = options.Samples;
+  request.Tolerance = static_cast<float>(options.Tolerance / 255.0);
   request.WorldToClip = camera.WorldToClip;
   request.Scheduling = options.Scheduling;
   return request;

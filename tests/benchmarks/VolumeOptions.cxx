@@ -41,6 +41,11 @@ void VolumeOptions::AddTo(CLI::App& app)
   app.add_option("--samples", this->Samples, "per pixel")
     ->capture_default_str()
     ->check(CLI::PositiveNumber);
+  app
+    .add_option("--tolerance", this->Tolerance,
+      "standard error, in steps of 255, at which pixels get no more samples; 0: all get them")
+    ->capture_default_str()
+    ->check(CLI::NonNegativeNumber);
   app.add_option("--picture", this->Picture, "PPM file for the picture of the first position");
   this->RunOptions::AddTo(app);
 }

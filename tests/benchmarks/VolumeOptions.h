@@ -19,10 +19,11 @@ struct VolumeOptions : RunOptions
   int TileSize = rt::FrameRequest().TileSize;
   bool Shadows = false; ///< of a lamp beside the camera
   double LightRadius = 0.0;
-  int Occlusion = 0;   ///< ambient occlusion rays for each place that is lit
-  int Samples = 1;     ///< per pixel
-  std::string Session; ///< file; empty: an orbit
-  std::string Picture; ///< PPM file of the first frame; empty: none
+  int Occlusion = 0;      ///< ambient occlusion rays for each place that is lit
+  int Samples = 1;        ///< per pixel
+  double Tolerance = 0.0; ///< FrameRequest::Tolerance, in steps of 255
+  std::string Session;    ///< file; empty: an orbit
+  std::string Picture;    ///< PPM file of the first frame; empty: none
 
   /// Adds the options that change this object.
   void AddTo(CLI::App& app);

@@ -13,7 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <utility>
 #include <variant>
+#include <vector>
 
 namespace
 {
@@ -66,6 +70,40 @@ protected:
       MeshScene::Publish(mesh, this->Messenger, this->Store), glm::dmat4(1.0));
     object.Look.Surface.Opacity = opacity;
     return object;
+  }
+
+  /// The tiles of a picture that gets its samples in steps.
+  std::vector<rt::Tile> Trace(
+    const rt::Scene& scene, rt::FrameRequest request, const std::vector<int>& steps)
+  {
+    return this->Store.Visit(
+      [&](auto& store)
+      {
+        auto& worker = store.GetWorker(0);
+        const rt::PixelRays rays(request);
+        const rt::SceneTracers tracers = rt::CreateSceneTracers(store, worker, scene);
+        const rt::TileGrid grid(request.Width, request.Height, request.TileSize);
+        std::vector<rt::Tile> tiles;
+        store.BeginFrame();
+        store.Enter(worker);
+        for (int number = 0; number < grid.GetCount(); ++number)
+        {
+          rt::Tile tile = grid.CreateTile(number);
+          request.FirstSample = 0;
+          for (const int samples : steps)
+          {
+            request.Samples = samples;
+            const rt::TileSampler sampler(tracers, scene, rays, request);
+            sampler.Trace(tile);
+            sampler.Finish(tile, glm::vec3(1.0f));
+            request.FirstSample += samples;
+          }
+          tiles.push_back(std::move(tile));
+        }
+        store.Leave(worker);
+        store.EndFrame();
+        return tiles;
+      });
   }
 
   dsm::Messenger Messenger{ std::move(dsm::LoopbackTransport::CreateGroup(1).front()) };
@@ -242,4 +280,62 @@ TEST_F(TestTileSampler, ClippedViewEqualsSinglePixels)
   const PixelDifference parts = this->Compare(LookAt({ 2.5, 1.8, 2.1 }), 64, 64, 16, clipping);
   EXPECT_GT(parts.Covered, 1000);
   EXPECT_EQ(parts.Pixels, 0);
+}
+
+/// Smooth pixels get fewer samples, and no pixel differs much; the bits do not depend on the steps.
+TEST_F(TestTileSampler, PixelsThatAreKnownGetNoMoreSamples)
+{
+  rt::Scene scene;
+  scene.Objects = { FunctionVolume::Publish(
+    65, [](const glm::dvec3& p) { return glm::length(p) - 0.8; }, this->Messenger, this->Store) };
+  scene.Lights.emplace_back();
+  scene.Lights.back().Direction = glm::normalize(glm::dvec3(-0.4, -1.0, -0.3));
+  rt::FrameRequest request;
+  request.Width = 244;
+  request.Height = 188;
+  request.TileSize = 19;
+  request.Channels.Value = rt::ChannelSet::All;
+  request.WorldToClip = LookAt({ 2.5, 1.8, 2.1 });
+  const std::vector<rt::Tile> all = this->Trace(scene, request, { 64 });
+  request.Tolerance = 0.5f / 255.0f;
+  const std::vector<rt::Tile> some = this->Trace(scene, request, { 64 });
+  const std::vector<rt::Tile> inSteps = this->Trace(scene, request, { 1, 1, 2, 5, 11, 12, 32 });
+  int covered = 0;
+  int taken = 0;
+  int full = 0;
+  int largest = 0;
+  int unlike = 0;
+  for (std::size_t tile = 0; tile < all.size(); ++tile)
+  {
+    EXPECT_EQ(some[tile].Counts, inSteps[tile].Counts);
+    EXPECT_EQ(some[tile].Sum, inSteps[tile].Sum);
+    EXPECT_EQ(some[tile].Color, inSteps[tile].Color);
+    EXPECT_EQ(some[tile].Albedo, inSteps[tile].Albedo);
+    EXPECT_EQ(some[tile].Object, all[tile].Object);
+    for (std::size_t pixel = 0; pixel < all[tile].Sum.size(); ++pixel)
+    {
+      if (all[tile].Sum[pixel] == glm::vec4(0.0f))
+      {
+        continue;
+      }
+      ++covered;
+      const int samples = some[tile].CountSamples(pixel);
+      EXPECT_GE(samples, rt::FrameRequest::SureSamples);
+      taken += samples;
+      full += samples == 64;
+      for (std::size_t channel = 4 * pixel; channel < 4 * pixel + 4; ++channel)
+      {
+        const int difference = std::abs(all[tile].Color[channel] - some[tile].Color[channel]);
+        largest = std::max(largest, difference);
+        unlike += difference > 1;
+      }
+    }
+  }
+  EXPECT_GT(covered, 8000);
+  // Pixels at the sphere's edge get all of them.
+  EXPECT_GT(full, 500);
+  EXPECT_LT(taken, 64 * covered * 3 / 4);
+  // The first samples may miss less than a sixteenth of a pixel.
+  EXPECT_LE(largest, 255 / rt::FrameRequest::SureSamples);
+  EXPECT_LE(unlike, covered / 500);
 }

@@ -32,7 +32,7 @@ struct Tile : Channels
   int Height = 0;
   int Index = 0; ///< row-major number of the tile in the frame
   int Layers = 1;
-  int Samples = 0;          ///< that Sum has
+  int Samples = 0;          ///< that Sum has at most
   bool IsNew = false;       ///< another rank traced it in the last frame
   std::uint64_t Misses = 0; ///< that its tracing waited for
   double Seconds = 0.0;     ///< processor time of tracing it, in seconds
@@ -49,6 +49,15 @@ struct Tile : Channels
   PixelVector<glm::vec3> OpenSum;
   PixelVector<float> ArrivingSquares;
   PixelVector<PackedNormal> Normals;
+  /// If a tolerance was asked for (FrameRequest::Tolerance): the samples of each pixel, fewer than Samples where they
+  /// are enough, and the sums of the squares of their colors. Else empty.
+  PixelVector<std::uint32_t> Counts;
+  PixelVector<float> Squares;
+
+  int CountSamples(std::size_t pixel) const
+  {
+    return this->Counts.empty() ? this->Samples : static_cast<int>(this->Counts[pixel]);
+  }
 };
 
 /// Part of a frame on this rank: the tiles that it traced. Together the ranks have all tiles.

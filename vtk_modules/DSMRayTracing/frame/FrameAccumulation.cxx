@@ -140,7 +140,8 @@ FrameAccumulation::Result FrameAccumulation::TraceOnce(const Ranks& ranks, const
     }
   }
   this->Samples = request.FirstSample + request.Samples;
-  this->LastSamples = request.Samples;
+  const bool isForAll = request.Tolerance == 0.0f || this->Samples <= FrameRequest::SureSamples;
+  this->LastSamples = isForAll ? request.Samples : 0;
   return Result::Traced;
 }
 

@@ -125,7 +125,7 @@ private:
   std::uint64_t Digest = 0; ///< digest of the frame's content; 0: another frame takes its place
   int Samples = 0;          ///< that it has; 0 when there is nothing to add to
   int SamplesUnderWay = 0;  ///< that some tiles have got already: their adding was aborted
-  int LastSamples = 0;      ///< that were added last
+  int LastSamples = 0;      ///< that were added last to each pixel; 0: to some of them
   int Wanted = 0;
 };
 

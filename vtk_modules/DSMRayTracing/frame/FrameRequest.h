@@ -29,6 +29,11 @@ struct FrameRequest
   /// pixel's center; the others are spread over the pixel.
   int FirstSample = 0;
   int Samples = 1;
+  /// Standard error, of colors from 0 to 1, at which squares of pixels get no more samples (Tile::Counts); 0: all get
+  /// them. Pictures of several layers have none.
+  float Tolerance = 0.0f;
+  /// They get so many first.
+  static constexpr int SureSamples = 16;
   /// Surfaces that a pixel shows, front to back, which are kept apart; what is behind the last of them
   /// counts as part of it. More than one where something else is to be drawn between them.
   static constexpr int MaxLayers = 8;

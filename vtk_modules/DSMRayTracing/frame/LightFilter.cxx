@@ -111,7 +111,7 @@ float GetMean(const glm::vec3& color)
 
 NoisyPixel GetPixel(const Tile& tile, std::size_t pixel)
 {
-  const auto samples = static_cast<float>(tile.Samples);
+  const auto samples = static_cast<float>(tile.CountSamples(pixel));
   NoisyPixel noisy;
   noisy.Color = tile.Sum[pixel] / samples;
   noisy.Open = tile.OpenSum[pixel] / samples;
@@ -119,7 +119,7 @@ NoisyPixel GetPixel(const Tile& tile, std::size_t pixel)
   noisy.Depth = tile.Depth[pixel];
   const float open = GetMean(noisy.Open);
   const float part = open > 0.0f ? GetMean(glm::vec3(noisy.Color)) / open : 1.0f;
-  noisy.Variance = tile.Samples < 2
+  noisy.Variance = samples < 2.0f
     ? 0.0f
     : std::max(tile.ArrivingSquares[pixel] / samples - part * part, 0.0f) / (samples - 1.0f);
   return noisy;

@@ -33,10 +33,10 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
 {
   ObjectDigest digest;
   // The samples of a picture are added to one another.
-  const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, layers,
-    limits, mediumCuts, channels, scheduling] = request;
-  digest.AddAll(
-    width, height, worldToClip, pixelSize, tileSize, layers, limits, mediumCuts, channels);
+  const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, tolerance,
+    layers, limits, mediumCuts, channels, scheduling] = request;
+  digest.AddAll(width, height, worldToClip, pixelSize, tileSize, tolerance, layers, limits,
+    mediumCuts, channels);
   Add(digest, scene.Transport);
   digest.Add(scene.View);
   digest.Add(scene.Lights.size());

@@ -109,6 +109,9 @@ void TileSampler::Trace(Tile& tile) const
     tile.OpenSum.assign(isForFilter ? pixels : 0, glm::vec3(0.0f));
     tile.ArrivingSquares.assign(isForFilter ? pixels : 0, 0.0f);
     tile.Normals.assign(isForFilter ? pixels : 0, PackedNormal());
+    const bool mayStop = this->Request.Tolerance > 0.0f && tile.Layers == 1;
+    tile.Counts.assign(mayStop ? pixels : 0, 0);
+    tile.Squares.assign(mayStop ? pixels : 0, 0.0f);
   }
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
@@ -119,8 +122,9 @@ bool TileSampler::Prefetch(const Tile& tile) const
 {
   bool anyAbsent = false;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
-    [&](const PixelBox& box)
-    { anyAbsent |= this->Prefetch(this->FindBeam(tile, box), tile, box); });
+    [&](const PixelBox& box) {
+      anyAbsent |= this->IsOpen(tile, box) && this->Prefetch(this->FindBeam(tile, box), tile, box);
+    });
   return anyAbsent;
 }
 
@@ -128,7 +132,11 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
 {
   const std::size_t pixels = tile.Sum.size();
   const auto samples = static_cast<float>(this->Request.FirstSample + this->Request.Samples);
-  const glm::vec4 scale = glm::vec4(tint, 1.0f) / samples;
+  const auto getScale = [&, whole = glm::vec4(tint, 1.0f) / samples](std::size_t pixel)
+  {
+    return tile.Counts.empty() ? whole
+                               : glm::vec4(tint, 1.0f) / static_cast<float>(tile.Counts[pixel]);
+  };
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
     const glm::vec4& sum = tile.Sum[pixel];
@@ -138,11 +146,12 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
       std::fill_n(color, 4, std::uint8_t{ 0 });
       continue;
     }
-    ConvertSum(sum, scale, color);
+    ConvertSum(sum, getScale(pixel), color);
   }
   for (std::size_t pixel = 0; pixel < tile.AlbedoSum.size(); ++pixel)
   {
-    ConvertSum(tile.AlbedoSum[pixel], glm::vec4(1.0f / samples), &tile.Albedo[4 * pixel]);
+    const float scale = 1.0f / static_cast<float>(tile.CountSamples(pixel));
+    ConvertSum(tile.AlbedoSum[pixel], glm::vec4(scale), &tile.Albedo[4 * pixel]);
   }
   for (std::size_t pixel = 0; pixel < tile.NormalSum.size(); ++pixel)
   {
@@ -188,6 +197,10 @@ void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const PixelBox
 
 void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
 {
+  if (!this->IsOpen(tile, box))
+  {
+    return;
+  }
   SceneBeam beam = this->FindBeam(tile, box);
   if (beam.MayMeet())
   {
@@ -208,25 +221,90 @@ void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
         }
       });
   }
+  else
+  {
+    SetCounts(this->Request.FirstSample + this->Request.Samples, box, tile);
+  }
   this->Record(beam, tile, box);
 }
 
 void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const
 {
-  for (int sample = 0; sample < this->Request.Samples; ++sample)
+  if (!this->IsOpen(tile, box))
+  {
+    return;
+  }
+  const int end = this->Request.FirstSample + this->Request.Samples;
+  int sample = this->Request.FirstSample;
+  for (; sample < end && !this->AreEnough(sample, tile, box); ++sample)
   {
     PixelSampler::Samples samples;
-    this->Pixels.Sample(&beam, tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height,
-      this->Request.FirstSample + sample, samples);
+    this->Pixels.Sample(
+      &beam, tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height, sample, samples);
     for (int number = 0; number < samples.GetCount(); ++number)
     {
       AddSample(samples[number], tile);
     }
     for (int number = 0; tile.Present.HasMore() && number < samples.GetCount(); ++number)
     {
-      AddMoreChannels(samples[number], this->Request.FirstSample + sample, tile);
+      AddMoreChannels(samples[number], sample, tile);
     }
   }
+  SetCounts(sample, box, tile);
+}
+
+/// All of the pixels have so many samples.
+void TileSampler::SetCounts(int samples, const PixelBox& box, Tile& tile)
+{
+  for (int y = box.Top; !tile.Counts.empty() && y < box.Top + box.Height; ++y)
+  {
+    std::fill_n(&tile.Counts[static_cast<std::size_t>(y * tile.Width + box.Left)], box.Width,
+      static_cast<std::uint32_t>(samples));
+  }
+}
+
+template <class Is>
+bool TileSampler::FindPixel(const Tile& tile, const PixelBox& box, const Is& is)
+{
+  for (int y = box.Top; y < box.Top + box.Height; ++y)
+  {
+    for (int x = box.Left; x < box.Left + box.Width; ++x)
+    {
+      if (is(static_cast<std::size_t>(y) * tile.Width + static_cast<std::size_t>(x)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Returns whether any pixel has got all samples so far.
+bool TileSampler::IsOpen(const Tile& tile, const PixelBox& box) const
+{
+  return tile.Counts.empty() || this->Request.FirstSample == 0 ||
+    FindPixel(tile, box,
+      [&](std::size_t pixel)
+      { return static_cast<int>(tile.Counts[pixel]) == this->Request.FirstSample; });
+}
+
+/// Returns whether the pixels of a batch need no more than the samples that they have. That is decided at the powers of
+/// two, however many samples a request has, and for all of the pixels together: a few samples of one may miss an edge.
+bool TileSampler::AreEnough(int samples, const Tile& tile, const PixelBox& box) const
+{
+  const bool isPower = (samples & (samples - 1)) == 0;
+  if (tile.Counts.empty() || samples < FrameRequest::SureSamples || !isPower)
+  {
+    return false;
+  }
+  const auto count = static_cast<float>(samples);
+  const float limit = this->Request.Tolerance * this->Request.Tolerance * (count - 1.0f);
+  return !FindPixel(tile, box,
+    [&](std::size_t pixel)
+    {
+      const glm::vec4 mean = tile.Sum[pixel] / count;
+      return tile.Squares[pixel] / count - glm::dot(mean, mean) > limit;
+    });
 }
 
 void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
@@ -237,6 +315,10 @@ void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;
+    if (!tile.Squares.empty())
+    {
+      tile.Squares[pixel] += glm::dot(traced.Color, traced.Color);
+    }
     // A pixel is as near as the nearest of its samples, so that a surface's antialiased
     // border still covers what is behind.
     tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);

@@ -56,6 +56,13 @@ private:
   void TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const;
   static void AddSample(const PixelSample& traced, Tile& tile);
 
+  static void SetCounts(int samples, const PixelBox& box, Tile& tile);
+  /// Returns whether `is(pixel)` of any pixel of a box.
+  template <class Is>
+  static bool FindPixel(const Tile& tile, const PixelBox& box, const Is& is);
+  bool IsOpen(const Tile& tile, const PixelBox& box) const;
+  bool AreEnough(int samples, const Tile& tile, const PixelBox& box) const;
+
   std::vector<const BeamFinder*> Finders; ///< in the order of SceneBeam
   PixelSampler Pixels;
   const FrameRequest& Request;

@@ -40,6 +40,11 @@ dsm_setting(SamplesPerPixel OWNER scene TYPE int DEFAULT 1 RANGE 1 65536 CHOICES
   TEXT "Number of samples per pixel in still pictures. More samples smooth edges, soft shadows and ambient occlusion.
     The slider offers some numbers. Any other whole number can be entered. While the view moves, each picture has 1
     sample per pixel.")
+dsm_setting(SampleTolerance OWNER scene TYPE double DEFAULT 0.5 RANGE 0 255
+  LABEL "Sample Tolerance" PANEL advanced
+  TEXT "Standard error of a color, in steps of 255. A square of 8 x 8 pixels gets no more samples once each of its
+    pixels has at least 16 samples and an error below this. Pictures in which translucent surfaces lie among other
+    datasets get all samples. 0: all pixels get all samples.")
 dsm_setting(Denoise OWNER scene TYPE enum DEFAULT 1
   ENTRIES DenoiseNever "Off" DenoiseIncomplete "While samples are missing" DenoiseAlways "Always"
   LABEL "Denoise" PANEL default ENABLED light

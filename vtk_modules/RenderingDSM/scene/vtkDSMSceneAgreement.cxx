@@ -262,6 +262,10 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   {
     request.Channels.Value |= rt::ChannelSet::Integral;
   }
+  if (this->Light->GetSamplesPerPixel() > rt::FrameRequest::SureSamples)
+  {
+    request.Tolerance = static_cast<float>(this->Light->GetSampleTolerance() / 255.0);
+  }
   if (this->MayFilterLight(scene))
   {
     request.Channels.Value |= rt::LightFilter::Channels;
@@ -341,6 +345,7 @@ int vtkDSMScene::Internals::AgreeOnView(
   if (request.Layers > 1)
   {
     request.Channels.Value &= ~rt::LightFilter::Channels;
+    request.Tolerance = 0.0f;
   }
   scene.Transport.Background = view.Background.Lower;
   const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());

@@ -204,8 +204,10 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
     }
     if (result != Result::Aborted)
     {
+      const double seconds =
+        this->Eye->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds());
       this->Eye->Shown = { task.Content, edge,
-        this->Eye->Accumulation.GetSecondsPerPixel(this->Statistics->GetFrameSeconds()) };
+        seconds > 0.0 ? seconds : this->Eye->Shown.SecondsPerPixel };
     }
     else if (next + 1 == tries.end())
     {
