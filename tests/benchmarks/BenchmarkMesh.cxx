@@ -83,6 +83,10 @@ public:
   {
     return this->Mesh.GetEdgeFlags(this->First + triangle);
   }
+  double GetRadius(std::uint64_t triangle, int corner) const override
+  {
+    return this->Mesh.GetRadius(this->First + triangle, corner);
+  }
 
 private:
   const MeshFile::Mesh& Mesh;

@@ -164,6 +164,45 @@ inline Mesh CreateFan(int triangles)
   return mesh;
 }
 
+/// Lines of 2 to 9 points as tubes, and a sphere for each; see bricks::TriangleSource.
+inline Mesh CreateTubes(int lines)
+{
+  Mesh mesh;
+  for (int line = 0; line < lines; ++line)
+  {
+    glm::dvec3 place;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place[axis] = 1.6 * Random(line, axis, 11) - 0.8;
+    }
+    const int points = 2 + line % 8;
+    const std::uint64_t first = mesh.GetPointCount();
+    const std::uint64_t last = first + static_cast<std::uint64_t>(points - 1);
+    for (int point = 0; point <= points; ++point)
+    {
+      AddPoint(mesh, place, place, static_cast<double>(point) / points, Random(line, 12));
+      mesh.Radii.push_back(0.03 + 0.03 * Random(line, point, 13));
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        place[axis] += 0.4 * Random(line, point, 14 + axis) - 0.2;
+      }
+    }
+    for (std::uint64_t point = first; point <= last; ++point)
+    {
+      const std::uint64_t before = point > first ? point - 1 : first;
+      const std::uint64_t behind = points == 2 ? before : point < last ? point + 1 : last;
+      if (points > 2 || point == last)
+      {
+        mesh.Triangles.insert(mesh.Triangles.end(), { before, point, behind });
+      }
+    }
+    mesh.Triangles.insert(mesh.Triangles.end(), { last + 1, last + 1, last + 1 });
+    mesh.Radii.back() = 0.15 * Random(line, 17);
+  }
+  mesh.Normals.clear();
+  return mesh;
+}
+
 /// A mesh without any attribute.
 inline Mesh Strip(Mesh mesh)
 {

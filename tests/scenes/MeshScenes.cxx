@@ -12,7 +12,8 @@ void AddMeshes(Scenes& scenes)
 {
   const Named<Generated::Mesh> meshes = { { "Ball", Generated::CreateBall(6, 0.7) },
     { "Scan", Generated::CreateScan(16) }, { "Terrain", Generated::CreateTerrain(18, 0.8) },
-    { "Soup", Generated::CreateSoup(700) }, { "Fan", Generated::CreateFan(90) } };
+    { "Soup", Generated::CreateSoup(700) }, { "Fan", Generated::CreateFan(90) },
+    { "Tubes", Generated::CreateTubes(40) } };
   for (const auto& [name, mesh] : meshes)
   {
     for (const auto& entry : Cameras)
@@ -73,7 +74,8 @@ void AddMeshLooks(Scenes& scenes)
     { "Translucent", [](rt::MeshObject& object) { object.Look.Surface.Opacity = 0.4f; } } };
   const Generated::Mesh ball = Generated::CreateBall(5, 0.7);
   const Named<Generated::Mesh> meshes = { { "Points", ball },
-    { "Triangles", Generated::MoveToTriangles(ball) }, { "Soup", Generated::CreateSoup(300) } };
+    { "Triangles", Generated::MoveToTriangles(ball) }, { "Soup", Generated::CreateSoup(300) },
+    { "Tubes", Generated::CreateTubes(40) } };
   for (const auto& [meshName, mesh] : meshes)
   {
     for (const auto& [name, look] : looks)

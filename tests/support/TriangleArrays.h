@@ -23,6 +23,7 @@ public:
   std::vector<std::uint8_t> Colors;      ///< four an element
   std::vector<float> TextureCoordinates; ///< two a point
   std::vector<std::uint8_t> EdgeFlags;   ///< one a triangle
+  std::vector<double> Radii;             ///< one a point; makes the triangles tubes and spheres
   /// What Normals, Values and Colors belong to, when there are any.
   bricks::Attachment NormalsOf = bricks::Attachment::Points;
   bricks::Attachment ValuesOf = bricks::Attachment::Points;
@@ -36,6 +37,7 @@ public:
     attributes.Colors = this->Colors.empty() ? bricks::Attachment::None : this->ColorsOf;
     attributes.TextureCoordinates = !this->TextureCoordinates.empty();
     attributes.EdgeFlags = !this->EdgeFlags.empty();
+    attributes.Radii = !this->Radii.empty();
     return attributes;
   }
   std::uint64_t GetTriangleCount() const override { return this->Triangles.size() / 3; }
@@ -62,6 +64,10 @@ public:
     std::copy_n(this->TextureCoordinates.data() + 2 * point, 2, coordinate);
   }
   unsigned GetEdgeFlags(std::uint64_t triangle) const override { return this->EdgeFlags[triangle]; }
+  double GetRadius(std::uint64_t triangle, int corner) const override
+  {
+    return this->Radii[this->Triangles[3 * triangle + static_cast<std::uint64_t>(corner)]];
+  }
 };
 
 #endif

@@ -186,6 +186,7 @@ TriangleArrays<Real> TakePart(
         {
           copy(mesh.Colors, point, 4, piece.Colors);
         }
+        copy(mesh.Radii, point, 1, piece.Radii);
       }
     }
     if (mesh.NormalsOf == bricks::Attachment::Triangles)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TestMesh.h"
+#include "TestTubes.h"
 #include "tests/support/LimitedCluster.h"
 
 #include <gtest/gtest.h>
@@ -148,6 +148,25 @@ TEST(MeshDistribution, SameBitsForAnyRanksOrderAndThreads)
   for (const int ranks : { 1, 2, 3, 4 })
   {
     for (const unsigned seed : { 0u, 1u, 2u })
+    {
+      Setting setting;
+      setting.Ranks = ranks;
+      setting.Seed = seed;
+      setting.Threads = ranks % 3 + 1;
+      ExpectSame(expected, Publish(mesh, setting),
+        std::to_string(ranks) + " ranks, order " + std::to_string(seed));
+    }
+  }
+}
+
+TEST(MeshDistribution, SameBitsOfTubesAndSpheres)
+{
+  const Mesh mesh = TestTubes::CreateTubes(120, 80, 1);
+  const Outcome expected = Publish(mesh, {});
+  EXPECT_GT(expected.Blocks.size(), 10u);
+  for (const int ranks : { 1, 2, 3, 4 })
+  {
+    for (const unsigned seed : { 0u, 1u })
     {
       Setting setting;
       setting.Ranks = ranks;

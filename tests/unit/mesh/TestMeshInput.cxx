@@ -58,6 +58,7 @@ public:
   void GetColor(std::uint64_t, std::uint8_t*) const override {}
   void GetTextureCoordinate(std::uint64_t, double*) const override {}
   unsigned GetEdgeFlags(std::uint64_t) const override { return bricks::AllEdges; }
+  double GetRadius(std::uint64_t, int) const override { return 0.0; }
 };
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays of a mesh in packets find what they find alone, bit for bit, with every kind of vectors.
-#include "TestMesh.h"
+#include "TestTubes.h"
 
 #include <gtest/gtest.h>
 
@@ -265,6 +265,17 @@ TEST(MeshPackets, RaysThatCannotHitDisturbNoOther)
     packet[(number + 11) % 16].Max = -1.0;
   }
   EXPECT_GT(ComparePackets(CreateBlob(4), packets).Hits, 1000);
+}
+
+TEST(MeshPackets, TubesAndSpheres)
+{
+  const Mesh mesh = TestTubes::CreateTubes(150, 100, 30);
+  for (const bool back : { false, true })
+  {
+    const rt::MeshCulling culling{ back, false };
+    EXPECT_GT(
+      ComparePackets(mesh, CreateBlocks(100, 0.02, 31), glm::dmat4(1.0), culling).Hits, 1000);
+  }
 }
 
 TEST(MeshPackets, EmptyMesh)

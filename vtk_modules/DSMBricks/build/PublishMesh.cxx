@@ -37,8 +37,8 @@ MeshAttributes AgreeOnAttributes(
     {
       throw dsm::Error(std::string(what) + ": The pieces of the mesh on ranks " +
         std::to_string(first - pieces.data()) + " and " + std::to_string(&piece - pieces.data()) +
-        " differ in their normals, values, colors, texture coordinates or edge flags. All pieces "
-        "must have the same arrays.");
+        " differ in their normals, values, colors, texture coordinates, edge flags or radii. All "
+        "pieces must have the same arrays.");
     }
   }
   return first ? first->Attributes : MeshAttributes();

@@ -4,10 +4,55 @@
 #include "DSMBricks/layout/OctahedralNormal.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace bricks
 {
+
+namespace
+{
+
+/// Triangles are tested four at a time. Tubes are tested one by one, which takes much longer than the test of a box.
+constexpr std::uint32_t LargestLeaf = 4;
+constexpr std::uint32_t LargestLeafOfTubes = 1;
+
+/// Adds a ball, rounded outward.
+void AddBall(const double center[3], double radius, BoundingBox& box)
+{
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  float lower[4] = {};
+  float upper[4] = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    lower[axis] = std::nextafter(static_cast<float>(center[axis] - radius), -infinity);
+    upper[axis] = std::nextafter(static_cast<float>(center[axis] + radius), infinity);
+  }
+  box.Add(Float4::Load(lower));
+  box.Add(Float4::Load(upper));
+}
+
+/// Adds all that belongs to the middle one of three points of a tube: balls of all sizes up to the middles of the
+/// way to the others, or up to the other for a line of two points.
+void AddTube(const float corners[9], const float radii[3], BoundingBox& box)
+{
+  const bool isWhole = std::equal(corners, corners + 3, corners + 6);
+  const double part = isWhole ? 1.0 : 0.5;
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    double center[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double middle = corners[3 + axis];
+      center[axis] = middle + part * (corners[3 * corner + axis] - middle);
+    }
+    const double middleRadius = radii[1];
+    AddBall(center, middleRadius + part * (radii[corner] - middleRadius), box);
+  }
+}
+
+} // namespace
 
 TriangleBrickBuilder::TriangleBrickBuilder(
   const MeshAttributes& attributes, const MortonCode& order, std::uint32_t largestTriangles)
@@ -15,7 +60,7 @@ TriangleBrickBuilder::TriangleBrickBuilder(
   , Layout(attributes)
   , Order(order)
   , LargestTriangles(std::clamp(largestTriangles, 1u, TriangleBrickHeader::LargestTriangles))
-  , Tree(4)
+  , Tree(attributes.Radii ? LargestLeafOfTubes : LargestLeaf)
 {
   this->VertexWords += attributes.Values == Attachment::Points ? 1 : 0;
   this->VertexWords += attributes.Colors == Attachment::Points ? 1 : 0;
@@ -84,18 +129,33 @@ void TriangleBrickBuilder::MeasureTriangles(
   for (std::uint32_t triangle = 0; triangle < count; ++triangle)
   {
     BoundingBox& box = this->Boxes[triangle];
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      float position[4] = {};
-      std::memcpy(position, keys[triangle].Record + 3 * corner, 3 * sizeof(float));
-      box.Add(Float4::Load(position));
-    }
+    this->MeasureTriangle(keys[triangle].Record, box);
     brick.Bounds.Add(box);
     extents.Add(box.Upper - box.Lower);
   }
   float largest[4];
   extents.Upper.Store(largest);
-  this->LargestExtent = std::max({ largest[0], largest[1], largest[2] });
+  this->LargestExtent = this->Attributes.Radii ? std::numeric_limits<float>::infinity()
+                                               : std::max({ largest[0], largest[1], largest[2] });
+}
+
+void TriangleBrickBuilder::MeasureTriangle(const std::uint32_t* record, BoundingBox& box) const
+{
+  float corners[9];
+  TriangleRecord::GetCorners(record, corners);
+  if (this->Attributes.Radii)
+  {
+    float radii[3];
+    std::memcpy(radii, record + this->Layout.Normals, sizeof(radii));
+    AddTube(corners, radii, box);
+    return;
+  }
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    float position[4] = {};
+    std::copy_n(corners + 3 * corner, 3, position);
+    box.Add(Float4::Load(position));
+  }
 }
 
 void TriangleBrickBuilder::CollectVertices(const Key* keys, std::uint32_t count)
@@ -123,8 +183,8 @@ void TriangleBrickBuilder::GetVertex(
   const std::uint32_t* record, int corner, std::uint32_t* words) const
 {
   words = std::copy_n(record + 3 * corner, 3, words);
-  *words++ = this->Attributes.Normals != Attachment::None ? record[this->Layout.Normals + corner]
-                                                          : OctahedralNormal::None;
+  *words++ =
+    this->Layout.HasNormals ? record[this->Layout.Normals + corner] : OctahedralNormal::None;
   if (this->Attributes.Values == Attachment::Points)
   {
     *words++ = record[this->Layout.Values + corner];
@@ -176,6 +236,7 @@ TriangleBrickHeader TriangleBrickBuilder::LayOut(std::uint32_t triangles) const
   header.Normals = this->Attributes.Normals != Attachment::None;
   header.Values = this->Attributes.Values;
   header.Colors = this->Attributes.Colors;
+  header.Radii = this->Attributes.Radii;
   std::uint32_t offset = TriangleBrickHeader::NodeOffset +
     header.Nodes * static_cast<std::uint32_t>(sizeof(WideBvhNode<std::uint16_t>));
   const auto take = [&offset](std::uint32_t bytes)

@@ -38,6 +38,8 @@ private:
   void Sort(const std::uint32_t* records, std::size_t count);
   RecordBrick BuildBrick(const Key* keys, std::uint32_t count);
   void MeasureTriangles(const Key* keys, std::uint32_t count, RecordBrick& brick);
+  /// Adds a triangle or tube to its empty box.
+  void MeasureTriangle(const std::uint32_t* record, BoundingBox& box) const;
   /// Numbers the vertices in the order in which the leaves use them.
   void CollectVertices(const Key* keys, std::uint32_t count);
   /// The words of a corner as they are compared: position, normal, then what else points have.

@@ -60,17 +60,22 @@ TriangleReader::TriangleReader(const TriangleSource& source, const MeshAttribute
 
 RecordKind TriangleReader::GetKind() const
 {
-  return { "mesh", "triangles", this->Layout.GetBytes(), this->EstimateBrickBytes(),
-    TriangleBrickHeader::LargestTriangles };
+  return { "mesh", this->Attributes.Radii ? "tubes and spheres" : "triangles",
+    this->Layout.GetBytes(), this->EstimateBrickBytes(), TriangleBrickHeader::LargestTriangles };
 }
 
 double TriangleReader::EstimateBrickBytes() const
 {
   // A scanned surface has half as many points as triangles, and some are in several bricks.
-  constexpr double verticesPerTriangle = 0.6;
-  constexpr double nodeBytes = 5.0;
+  constexpr double verticesOfSurface = 0.6;
+  constexpr double nodeBytesOfSurface = 5.0;
+  // Tubes have a leaf each.
+  constexpr double verticesOfTubes = 1.1;
+  constexpr double nodeBytesOfTubes = 28.0;
   const MeshAttributes& has = this->Attributes;
-  const auto bytesOf = [](Attachment attachment, double bytes)
+  const double verticesPerTriangle = has.Radii ? verticesOfTubes : verticesOfSurface;
+  const double nodeBytes = has.Radii ? nodeBytesOfTubes : nodeBytesOfSurface;
+  const auto bytesOf = [=](Attachment attachment, double bytes)
   {
     return attachment == Attachment::None
       ? 0.0
@@ -93,11 +98,18 @@ PositionBounds TriangleReader::FindBounds(int threads) const
     [this](std::uint64_t triangle, PositionBounds& bounds)
     {
       double positions[9];
-      if (this->ReadPositions(triangle, positions))
+      double radii[3];
+      if (this->ReadPositions(triangle, positions) && this->ReadRadii(triangle, radii))
       {
-        bounds.Add(glm::make_vec3(positions));
-        bounds.Add(glm::make_vec3(positions + 3));
-        bounds.Add(glm::make_vec3(positions + 6));
+        for (int corner = 0; corner < 3; ++corner)
+        {
+          const glm::dvec3 position = glm::make_vec3(positions + 3 * corner);
+          bounds.Add(position - radii[corner]);
+          if (this->Attributes.Radii)
+          {
+            bounds.Add(position + radii[corner]);
+          }
+        }
       }
     });
 }
@@ -129,6 +141,21 @@ bool TriangleReader::ReadPositions(std::uint64_t triangle, double positions[9]) 
   return finite;
 }
 
+bool TriangleReader::ReadRadii(std::uint64_t triangle, double radii[3]) const
+{
+  std::fill_n(radii, 3, 0.0);
+  if (!this->Attributes.Radii)
+  {
+    return true;
+  }
+  for (int corner = 0; corner < 3; ++corner)
+  {
+    radii[corner] = this->Source.GetRadius(triangle, corner);
+  }
+  return std::all_of(radii, radii + 3, [](double radius) { return std::isfinite(radius); }) &&
+    std::any_of(radii, radii + 3, [](double radius) { return radius > 0.0; });
+}
+
 std::uint64_t TriangleReader::FindCode(std::uint64_t triangle, const MortonCode& order) const
 {
   float corners[9];
@@ -157,8 +184,13 @@ bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int o
   {
     PlaceInBrick(this->Space, positions + word, read + word);
   }
+  double radii[3];
+  if (!this->ReadRadii(triangle, radii))
+  {
+    return false;
+  }
   int first = 0;
-  for (int corner = 1; corner < 3; ++corner)
+  for (int corner = 1; corner < 3 && !this->Attributes.Radii; ++corner)
   {
     if (std::lexicographical_compare(
           read + 3 * corner, read + 3 * corner + 3, read + 3 * first, read + 3 * first + 3))
@@ -171,7 +203,7 @@ bool TriangleReader::ReadCorners(std::uint64_t triangle, float corners[9], int o
     order[corner] = (first + corner) % 3;
     std::copy_n(read + 3 * order[corner], 3, corners + 3 * corner);
   }
-  return HasArea(corners);
+  return this->Attributes.Radii || HasArea(corners);
 }
 
 template <class GetWord>
@@ -207,6 +239,14 @@ void TriangleReader::ReadRecord(std::uint64_t triangle, std::uint32_t* record) c
       this->Source.GetNormal(own ? triangle : points[corner], normal);
       record[this->Layout.Normals + corner] = OctahedralNormal::Pack(normal);
     }
+  }
+  if (this->Attributes.Radii)
+  {
+    double radii[3];
+    this->ReadRadii(triangle, radii);
+    std::transform(radii, radii + 3, record + this->Layout.Normals,
+      [this](double radius)
+      { return GetBits(static_cast<float>(radius / this->Space.Scale) + 0.0f); });
   }
   WriteElements(this->Attributes.Values, triangle, points, record + this->Layout.Values,
     [this](std::uint64_t element)

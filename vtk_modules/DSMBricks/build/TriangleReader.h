@@ -39,6 +39,8 @@ private:
   double EstimateBrickBytes() const;
   /// Three positions in the mesh's space. False when one is not finite.
   bool ReadPositions(std::uint64_t triangle, double positions[9]) const;
+  /// Three radii in the mesh's space, 0 for triangles. False when one is not finite or all of a tube's are 0.
+  bool ReadRadii(std::uint64_t triangle, double radii[3]) const;
   /// The record's corners; order[i] is the corner of the source that comes to the i-th place. False for a triangle that
   /// no ray can hit.
   bool ReadCorners(std::uint64_t triangle, float corners[9], int order[3]) const;

@@ -27,12 +27,14 @@ struct MeshAttributes
   Attachment Colors = Attachment::None;
   bool TextureCoordinates = false; ///< at the points
   bool EdgeFlags = false;          ///< of the triangles; without them, all triangles have AllEdges
+  /// The primitives are tubes and spheres (TriangleSource), whose corners have radii and no normals.
+  bool Radii = false;
 
   bool operator==(const MeshAttributes& other) const
   {
     return this->Normals == other.Normals && this->Values == other.Values &&
       this->Colors == other.Colors && this->TextureCoordinates == other.TextureCoordinates &&
-      this->EdgeFlags == other.EdgeFlags;
+      this->EdgeFlags == other.EdgeFlags && this->Radii == other.Radii;
   }
   bool operator!=(const MeshAttributes& other) const { return !(*this == other); }
 };

@@ -6,6 +6,7 @@
 #include "DSMCore/base/Block.h"
 
 #include <cstdint>
+#include <cstring>
 
 namespace bricks
 {
@@ -26,7 +27,8 @@ namespace bricks
 ///
 /// Every part starts at a multiple of 16 bytes. Offsets are from the start of the block, so it can lie anywhere; an
 /// offset of 0 means that the part is missing. Vertices are shared between triangles within the brick and repeated
-/// in neighboring bricks, bit for bit.
+/// in neighboring bricks, bit for bit. Tubes and spheres lie in the place of triangles; see
+/// TriangleSource.
 struct TriangleBrickHeader
 {
   std::uint32_t BlockBytes;
@@ -39,12 +41,14 @@ struct TriangleBrickHeader
   std::uint32_t ColorOffset;
   std::uint32_t TextureOffset;
   std::uint32_t EdgeFlagOffset;
-  /// The longest edge along an axis of any triangle's bounds; see TriangleFilter.
+  /// The longest edge along an axis of any triangle's bounds; see TriangleFilter. Infinite for tubes and
+  /// spheres, of which it drops none.
   float LargestExtent;
   bool Normals;
   Attachment Values;
   Attachment Colors;
-  std::uint8_t Unused[21];
+  bool Radii; ///< the triangles are tubes and spheres
+  std::uint8_t Unused[20];
 
   static constexpr std::uint32_t NodeOffset = 64;
   static constexpr std::uint32_t EdgeFlagsPerWord = 10;
@@ -61,8 +65,15 @@ struct TriangleBrickVertex
   /// Relative to the mesh's origin, not the brick's: the same point has the same bits in all bricks,
   /// so no ray slips between them.
   float Position[3];
-  /// OctahedralNormal.
+  /// OctahedralNormal; or, of tubes and spheres, the bits of the radius.
   std::uint32_t Normal;
+
+  float GetRadius() const
+  {
+    float radius;
+    std::memcpy(&radius, &this->Normal, sizeof(radius));
+    return radius;
+  }
 };
 
 static_assert(sizeof(TriangleBrickVertex) == 16, "read as one vector");

@@ -18,8 +18,8 @@ namespace bricks
 struct TriangleMesh : BrickSpace
 {
   MeshAttributes Attributes;
-  std::uint64_t Triangles = 0;
-  /// Triangles of the input that no ray can hit: without area, or with a point that is not finite.
+  std::uint64_t Triangles = 0; ///< or tubes and spheres
+  /// Those of the input that no ray can hit: without area or radius, or with a point that is not finite.
   std::uint64_t Dropped = 0;
   std::shared_ptr<dsm::BlockSegment> Segment;
   BrickBvh Bricks;

@@ -25,7 +25,8 @@ struct MeshHit
 {
   double T = 0.0;
   /// Normal of the triangle's plane. The corners are counter-clockwise, in the mesh's space, seen
-  /// from the side it points to (a mirroring matrix does not turn the surface inside out).
+  /// from the side it points to (a mirroring matrix does not turn the surface inside out). Tubes and
+  /// spheres: outward.
   glm::dvec3 GeometricNormal{ 0.0 };
   /// Interpolated from the points' normals; where they have none, the geometric one.
   glm::dvec3 Normal{ 0.0 };
@@ -35,9 +36,11 @@ struct MeshHit
   glm::dvec3 CornerValues{ 0.0 };      ///< in the order of Weights; NaN without values
   glm::vec4 Color{ 1.0f };             ///< in [0, 1], not premultiplied; white without colors
   glm::dvec2 TextureCoordinate{ 0.0 }; ///< 0 without
-  /// Barycentric weights of the corners in the brick's order: the smallest position first.
+  /// Barycentric weights of the corners in the brick's order: the smallest position first; or along the
+  /// line, for tubes.
   glm::dvec3 Weights{ 0.0 };
   glm::vec3 Corners[3]; ///< in that order, relative to the mesh's origin
+  float Radius = 0.0f;  ///< the largest one of the corners, in the same units; 0 for triangles
   unsigned EdgeFlags = bricks::AllEdges;
   dsm::BlockId Brick = 0;
   std::uint32_t Triangle = 0; ///< index in the brick
@@ -51,7 +54,9 @@ struct MeshHit
     this->Brick = triangle.Brick;
     this->Triangle = triangle.Triangle;
     this->Weights = { triangle.Weights[0], triangle.Weights[1], triangle.Weights[2] };
-    this->EdgeFlags = attributes.EdgeFlags;
+    const bricks::MeshAttributes& has = instance.GetMesh().Attributes;
+    this->EdgeFlags = has.Radii ? 0 : attributes.EdgeFlags;
+    this->Radius = has.Radii ? attributes.GetLargestRadius() : 0.0f;
 
     glm::dvec3 corners[3];
     for (int corner = 0; corner < 3; ++corner)
@@ -60,20 +65,22 @@ struct MeshHit
       this->Corners[corner] = { position[0], position[1], position[2] };
       corners[corner] = this->Corners[corner];
     }
-    const glm::dvec3 plane =
-      instance.TurnNormal(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-    const double length = glm::length(plane);
-    this->GeometricNormal = length > 0.0 ? plane / length : -glm::normalize(ray.Direction);
+    const glm::dvec3 upright =
+      instance.TurnNormal(has.Radii ? instance.PlaceInBricks(ray.Origin + this->T * ray.Direction) -
+            (this->Weights[0] * corners[0] + this->Weights[1] * corners[1] +
+              this->Weights[2] * corners[2])
+                                    : glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    const double length = glm::length(upright);
+    this->GeometricNormal = length > 0.0 ? upright / length : -glm::normalize(ray.Direction);
     this->Normal = this->GeometricNormal;
     glm::dvec3 normal;
-    if (attributes.GetNormal(triangle.Weights, normal))
+    if (!has.Radii && attributes.GetNormal(triangle.Weights, normal))
     {
       normal = instance.TurnNormal(normal);
       const double size = glm::length(normal);
       this->Normal = size > 0.0 ? normal / size : this->GeometricNormal;
     }
 
-    const bricks::MeshAttributes& has = instance.GetMesh().Attributes;
     const bool hasValues = has.Values != bricks::Attachment::None;
     const double notANumber = std::numeric_limits<double>::quiet_NaN();
     this->Value = hasValues ? attributes.GetValue(triangle.Weights) : notANumber;

@@ -49,11 +49,11 @@ public:
   const glm::dmat4& GetMeshToWorld() const { return this->MeshToWorld; }
 
   /// World length that two triangles can at most be apart, near these corners, for the rounding of
-  /// corners to what bricks hold alone: nearer ones cannot be told apart.
-  double GetResolution(const glm::vec3 corners[3]) const
+  /// corners to what bricks hold alone: nearer ones cannot be told apart. `radius`: of tubes, or 0.
+  double GetResolution(const glm::vec3 corners[3], float radius) const
   {
     const glm::vec3 farthest =
-      glm::max(glm::max(glm::abs(corners[0]), glm::abs(corners[1])), glm::abs(corners[2]));
+      glm::max(glm::max(glm::abs(corners[0]), glm::abs(corners[1])), glm::abs(corners[2])) + radius;
     return CornerStep * glm::dot(glm::dvec3(farthest), this->AxisLengths);
   }
 
@@ -70,6 +70,12 @@ public:
   /// The steps of GetMeshRay: world, less this point, times this matrix.
   const glm::dvec3& GetWorldOrigin() const { return this->WorldOrigin; }
   const glm::dmat3& GetWorldToBricks() const { return this->WorldToBricks; }
+
+  /// A world place as bricks would have it.
+  glm::dvec3 PlaceInBricks(const glm::dvec3& position) const
+  {
+    return this->WorldToBricks * (position - this->WorldOrigin);
+  }
 
   /// World place of a corner as bricks have it.
   glm::dvec3 Place(const glm::vec3& corner) const

@@ -96,7 +96,7 @@ private:
     }
     point.Color.w *= point.Surface->Opacity;
     const glm::dvec3 distance = glm::abs(point.Position) + glm::abs(ray.Origin);
-    point.Clearance = this->Object.Instance->GetResolution(hit.Corners) +
+    point.Clearance = this->Object.Instance->GetResolution(hit.Corners, hit.Radius) +
       HitError * (distance.x + distance.y + distance.z);
     point.LineCover = 0.0;
   }

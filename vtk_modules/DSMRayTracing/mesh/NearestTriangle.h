@@ -6,6 +6,7 @@
 #include "DSMRayTracing/mesh/MeshInstance.h"
 #include "DSMRayTracing/mesh/TriangleHit.h"
 #include "DSMRayTracing/mesh/TriangleIntersector.h"
+#include "DSMRayTracing/mesh/TubeIntersector.h"
 #include "DSMRayTracing/ray/TriangleRay.h"
 
 #include <cstdint>
@@ -20,12 +21,17 @@ struct NearestTriangle
   TriangleHit Hit;
   bool Found = false;
 
-  /// Returns whether a ray intersects a triangle of a brick, and sets `hit`.
+  /// Returns whether a ray intersects a triangle of a brick, or a tube, and sets `hit`.
   static bool Meets(const TriangleRay& ray, const MeshCulling& culling,
     const bricks::TriangleBrick& brick, std::uint32_t triangle, TriangleHit& hit)
   {
     const bricks::TriangleBrickVertex* vertices = brick.GetVertices();
     const std::uint16_t* corners = brick.GetTriangle(triangle);
+    if (brick.GetHeader().Radii)
+    {
+      return IntersectTube(
+        ray, culling, vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], hit);
+    }
     return IntersectTriangle(ray, vertices[corners[0]].Position, vertices[corners[1]].Position,
              vertices[corners[2]].Position, hit) &&
       !(hit.Front ? culling.Front : culling.Back);

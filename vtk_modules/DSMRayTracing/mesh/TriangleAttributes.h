@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -21,7 +22,7 @@ namespace rt
 /// released.
 struct TriangleAttributes
 {
-  std::uint32_t Normals[3];
+  std::uint32_t Normals[3]; ///< or the bits of radii
   float Values[3];
   std::uint8_t Colors[3][4];
   float TextureCoordinates[3][2];
@@ -71,6 +72,14 @@ struct TriangleAttributes
     }
     normal = sum;
     return true;
+  }
+
+  /// For tubes.
+  float GetLargestRadius() const
+  {
+    float radii[3];
+    std::memcpy(radii, this->Normals, sizeof(radii));
+    return std::max({ radii[0], radii[1], radii[2] });
   }
 
   double GetValue(const double weights[3]) const

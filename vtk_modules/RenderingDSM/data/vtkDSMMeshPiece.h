@@ -43,6 +43,7 @@ public:
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
   void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;
   unsigned GetEdgeFlags(std::uint64_t triangle) const override;
+  double GetRadius(std::uint64_t, int) const override { return 0.0; }
 
 private:
   struct Part
