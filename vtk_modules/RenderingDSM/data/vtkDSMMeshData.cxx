@@ -3,10 +3,9 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMBricks/build/PublishMesh.h"
-#include "DSMCore/memory/HostMemory.h"
+#include "DSMCore/base/Error.h"
 #include "vtkDSMGather.h"
 #include "vtkDSMProgress.h"
-#include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
@@ -14,7 +13,6 @@
 #include "vtkMath.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstring>
@@ -29,23 +27,9 @@ namespace
 /// Default thickness of lines and points, as a part of the data's diagonal.
 constexpr double DefaultRadiusPart = 1.0 / 300.0;
 
-/// Bytes, arrays included, of a triangle that stands for a part of a line or a point, until it is
-/// in its brick.
-constexpr std::uint64_t SolidTriangleBytes = 200;
-
 /// Up to so many blocks have meshes of their own, so that a new look for one of them leaves all bricks
 /// as they are. Every ray is tested against every mesh.
 constexpr std::size_t MostOwnMeshes = 64;
-
-/// Tubes and spheres are cut into triangles for us only.
-void HideEdges(vtkPolyData* data)
-{
-  vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName("vtkDSMEdgeFlags");
-  flags->SetNumberOfTuples(data->GetNumberOfPoints());
-  flags->FillValue(0);
-  data->GetPointData()->SetAttribute(flags, vtkDataSetAttributes::EDGEFLAG);
-}
 
 /// Store in which a mesh is published.
 struct PlacedStore
@@ -79,8 +63,10 @@ struct vtkDSMMeshData::ColorReport
 
 bool vtkDSMMeshData::Key::operator<(const Key& other) const
 {
-  const auto order = [](const Key& key) {
-    return std::make_tuple(key.Group, key.Normals, key.Values, key.Colors, key.TextureCoordinates);
+  const auto order = [](const Key& key)
+  {
+    return std::make_tuple(
+      key.Group, key.Normals, key.Values, key.Colors, key.TextureCoordinates, key.Solid);
   };
   return order(*this) < order(other);
 }
@@ -102,33 +88,19 @@ vtkDSMMeshData::vtkDSMMeshData(std::shared_ptr<vtkDSMRankGroup> group, vtkDSMMes
       }
     });
   this->FormGroups();
-  std::vector<vtkPolyData*> data;
-  for (const vtkDSMMeshBlock& block : this->Blocks)
-  {
-    if (block.Appearance.Visible)
-    {
-      data.push_back(block.Data);
-    }
-  }
-  this->FindBounds(data);
+  this->FindBounds();
+  this->Solids = { ChooseRadius(this->Input.LineRadius, this->Diagonal),
+    ChooseRadius(this->Input.PointRadius, this->Diagonal), this->Input.RadiusArray };
   this->DescribeSources(content);
   if (old && old->Group == this->Group)
   {
     this->TakeOver(std::move(old->Parts));
   }
-  const vtkDSMTubesAndSpheres solids(ChooseRadius(this->Input.LineRadius, this->Diagonal),
-    ChooseRadius(this->Input.PointRadius, this->Diagonal), this->Input.RadiusArray);
-  messenger.RunTogether(what, [&] { this->CheckSolids(solids); });
   std::vector<ColorReport> reports;
-  messenger.RunTogether(what, [&] { this->CollectSurfaces(solids, reports); });
-  // Tubes and spheres reach beyond the points.
-  for (const Surface& surface : this->Surfaces)
-  {
-    data.push_back(surface.Data);
-  }
-  this->FindBounds(data);
+  messenger.RunTogether(what, [&] { this->CollectSurfaces(reports); });
   this->CheckColors(reports);
   this->Publish();
+  this->AddSolidsToBounds();
   this->Blocks.clear();
   this->Groups.clear();
   this->Surfaces.clear();
@@ -146,9 +118,8 @@ void vtkDSMMeshData::FormGroups()
   std::vector<Member> mine;
   for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    const bool flagged = this->Input.Wish.EdgeFlags &&
-      (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0 ||
-        vtkDSMTriangleList::NeedsEdgeFlags(block.Data));
+    const bool flagged =
+      this->Input.Wish.EdgeFlags && vtkDSMTriangleList::NeedsEdgeFlags(block.Data);
     mine.push_back({ block.Number, block.Appearance, flagged ? 1 : 0 });
   }
   std::set<std::uint32_t> numbers;
@@ -203,8 +174,8 @@ void vtkDSMMeshData::DescribeSources(const vtkDSMMeshContent& content)
     std::vector<std::uint64_t> numbers = content.Blocks[index];
     if (block.Data->GetNumberOfVerts() > 0 || block.Data->GetNumberOfLines() > 0)
     {
-      vtkDSMMeshContent::AddNumber(numbers, ChooseRadius(this->Input.LineRadius, this->Diagonal));
-      vtkDSMMeshContent::AddNumber(numbers, ChooseRadius(this->Input.PointRadius, this->Diagonal));
+      vtkDSMMeshContent::AddNumber(numbers, this->Solids.LineRadius);
+      vtkDSMMeshContent::AddNumber(numbers, this->Solids.PointRadius);
     }
     std::vector<std::uint64_t>& source = this->Sources[this->Groups[index]];
     source.insert(source.end(), numbers.begin(), numbers.end());
@@ -221,7 +192,8 @@ void vtkDSMMeshData::TakeOver(std::vector<Part>&& old)
     const bool same =
       source != this->Sources.end() ? source->second == part.Source : part.Source.empty();
     const bool usable = this->Looks.count(part.Kind.Group) != 0 &&
-      (part.Mesh->Attributes.EdgeFlags || this->Flagged.count(part.Kind.Group) == 0);
+      (part.Mesh->Attributes.EdgeFlags || part.Kind.Solid != 0 ||
+        this->Flagged.count(part.Kind.Group) == 0);
     mine.push_back(std::byte(same && usable ? 1 : 0));
   }
   std::vector<char> same(old.size(), 1);
@@ -243,16 +215,19 @@ void vtkDSMMeshData::TakeOver(std::vector<Part>&& old)
   }
 }
 
-void vtkDSMMeshData::FindBounds(const std::vector<vtkPolyData*>& mine)
+void vtkDSMMeshData::FindBounds()
 {
   struct Box
   {
     double Bounds[6];
   };
   vtkBoundingBox box;
-  for (vtkPolyData* data : mine)
+  for (const vtkDSMMeshBlock& block : this->Blocks)
   {
-    box.AddBounds(data->GetBounds());
+    if (block.Appearance.Visible)
+    {
+      box.AddBounds(block.Data->GetBounds());
+    }
   }
   Box own;
   box.GetBounds(own.Bounds);
@@ -273,30 +248,31 @@ void vtkDSMMeshData::FindBounds(const std::vector<vtkPolyData*>& mine)
   }
 }
 
-void vtkDSMMeshData::CheckSolids(const vtkDSMTubesAndSpheres& solids) const
+void vtkDSMMeshData::AddSolidsToBounds()
 {
-  std::uint64_t triangles = 0;
-  for (const vtkDSMMeshBlock& block : this->Blocks)
+  vtkBoundingBox box;
+  if (vtkMath::AreBoundsInitialized(this->Bounds))
   {
-    if (!block.Appearance.Visible)
-    {
-      continue;
-    }
-    triangles += solids.EstimateTriangles(block.Data);
+    box.AddBounds(this->Bounds);
   }
-  const std::uint64_t available = dsm::GetAvailableHostMemory() /
-    static_cast<std::uint64_t>(this->Group->GetMessenger().GetRanksOnHost());
-  if (triangles > available / SolidTriangleBytes)
+  for (const Part& part : this->Parts)
   {
-    throw dsm::Error("Lines and points would become " + std::to_string(triangles) +
-      " triangles of tubes and spheres, which exceed the memory of this rank (" +
-      dsm::FormatMebibytes(available) +
-      "). Set the line or point radius to a negative number to hide them, or use more ranks.");
+    const bricks::TriangleMesh& mesh = *part.Mesh;
+    if (part.Kind.Solid != 0 && part.Appearance.Visible && !mesh.Bricks.IsEmpty())
+    {
+      glm::dvec3 lower = mesh.Origin + mesh.Scale * mesh.Lower;
+      glm::dvec3 upper = mesh.Origin + mesh.Scale * mesh.Upper;
+      box.AddPoint(&lower.x);
+      box.AddPoint(&upper.x);
+    }
+  }
+  if (box.IsValid())
+  {
+    box.GetBounds(this->Bounds);
   }
 }
 
-void vtkDSMMeshData::CollectSurfaces(
-  const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports)
+void vtkDSMMeshData::CollectSurfaces(std::vector<ColorReport>& reports)
 {
   for (std::size_t index = 0; index < this->Blocks.size(); ++index)
   {
@@ -318,34 +294,28 @@ void vtkDSMMeshData::CollectSurfaces(
     }
     if (data->GetNumberOfPolys() > 0 || data->GetNumberOfStrips() > 0)
     {
-      this->AddSurface(group, data);
+      this->AddSurface(group, data, false);
     }
-    for (const auto& solid : { solids.MakeTubes(data), solids.MakeSpheres(data) })
+    if (this->Solids.HasAny(data))
     {
-      if (solid && solid->GetNumberOfCells() > 0)
-      {
-        if (this->Input.Wish.EdgeFlags)
-        {
-          HideEdges(solid);
-        }
-        this->AddSurface(group, solid);
-      }
+      this->AddSurface(group, data, true);
     }
   }
 }
 
-void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data)
+void vtkDSMMeshData::AddSurface(std::uint32_t group, vtkPolyData* data, bool isSolid)
 {
   Surface surface;
   surface.Data = data;
   surface.Colors = vtkDSMMeshColors(this->Input.Mapper, data);
   const bricks::MeshAttributes attributes =
-    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Input.Wish);
+    vtkDSMMeshPiece::GetAttributes(data, surface.Colors, this->Input.Wish, isSolid);
   surface.Kind.Group = group;
   surface.Kind.Normals = static_cast<std::uint32_t>(attributes.Normals);
   surface.Kind.Values = static_cast<std::uint32_t>(attributes.Values);
   surface.Kind.Colors = static_cast<std::uint32_t>(attributes.Colors);
   surface.Kind.TextureCoordinates = attributes.TextureCoordinates ? 1 : 0;
+  surface.Kind.Solid = attributes.Radii ? 1 : 0;
   this->Surfaces.push_back(std::move(surface));
 }
 
@@ -463,7 +433,7 @@ std::shared_ptr<const bricks::TriangleMesh> vtkDSMMeshData::PublishMesh(
       {
         if (!(surface.Kind < kind) && !(kind < surface.Kind))
         {
-          piece.Add(surface.Data, surface.Colors, wish);
+          piece.Add(surface.Data, surface.Colors, wish, kind.Solid != 0 ? &this->Solids : nullptr);
         }
       }
     });
@@ -493,7 +463,7 @@ std::uint64_t vtkDSMMeshData::HashSource(const Key& kind, const vtkDSMMeshWish& 
 {
   bricks::ByteHash hash;
   const std::uint32_t form[] = { kind.Normals, kind.Values, kind.Colors, kind.TextureCoordinates,
-    wish.TextureCoordinates ? 1u : 0u, wish.EdgeFlags ? 1u : 0u };
+    kind.Solid, wish.TextureCoordinates ? 1u : 0u, wish.EdgeFlags ? 1u : 0u };
   hash.Add(form, sizeof(form));
   const auto source = this->Sources.find(kind.Group);
   if (source != this->Sources.end())

@@ -8,6 +8,7 @@
 #include "vtkDSMMeshContent.h"
 #include "vtkDSMMeshInput.h"
 #include "vtkDSMRankGroup.h"
+#include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkSmartPointer.h"
 
@@ -19,7 +20,6 @@
 #include <string>
 #include <vector>
 
-class vtkDSMTubesAndSpheres;
 class vtkPolyData;
 
 /// A dataset of surfaces that is spread over the ranks, as meshes in bricks: one for each block and
@@ -36,6 +36,7 @@ public:
     std::uint32_t Values = 0;
     std::uint32_t Colors = 0;
     std::uint32_t TextureCoordinates = 0;
+    std::uint32_t Solid = 0; ///< tubes and spheres
 
     bool operator<(const Key& other) const;
   };
@@ -82,10 +83,12 @@ private:
   std::uint32_t FindGroup(const Part& part) const;
   void DescribeSources(const vtkDSMMeshContent& content);
   void TakeOver(std::vector<Part>&& old);
-  void FindBounds(const std::vector<vtkPolyData*>& mine);
-  void CheckSolids(const vtkDSMTubesAndSpheres& solids) const;
-  void CollectSurfaces(const vtkDSMTubesAndSpheres& solids, std::vector<ColorReport>& reports);
-  void AddSurface(std::uint32_t group, vtkPolyData* data);
+  void FindBounds();
+  /// Tubes and spheres reach beyond the points.
+  void AddSolidsToBounds();
+  void CollectSurfaces(std::vector<ColorReport>& reports);
+  /// Adds the polygons of the data, or its tubes and spheres.
+  void AddSurface(std::uint32_t group, vtkPolyData* data, bool isSolid);
   void CheckColors(const std::vector<ColorReport>& mine);
   std::string ListArrays() const;
   void Publish();
@@ -99,6 +102,7 @@ private:
   std::vector<vtkDSMMeshBlock> Blocks;
   std::vector<std::uint32_t> Groups; ///< group of each block
   std::vector<Surface> Surfaces;
+  vtkDSMTubesAndSpheres Solids;
   std::map<std::uint32_t, std::vector<std::uint64_t>> Sources; ///< for each group
 
   /// Groups are blocks, and not looks.

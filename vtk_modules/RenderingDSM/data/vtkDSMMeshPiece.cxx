@@ -43,24 +43,30 @@ vtkDataArray* FindTextureCoordinates(vtkPolyData* data)
 } // namespace
 
 bricks::MeshAttributes vtkDSMMeshPiece::GetAttributes(
-  vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish)
+  vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish, bool isSolid)
 {
   bricks::MeshAttributes attributes;
   attributes.TextureCoordinates = wish.TextureCoordinates && FindTextureCoordinates(data);
-  attributes.EdgeFlags = wish.EdgeFlags;
-  FindNormals(data, attributes.Normals);
+  attributes.Radii = isSolid;
+  if (!isSolid)
+  {
+    attributes.EdgeFlags = wish.EdgeFlags;
+    FindNormals(data, attributes.Normals);
+  }
   attributes.Values = colors.GetValues();
   attributes.Colors = colors.GetColors();
   return attributes;
 }
 
-void vtkDSMMeshPiece::Add(
-  vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish)
+void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors,
+  const vtkDSMMeshWish& wish, const vtkDSMTubesAndSpheres* solids)
 {
-  this->Attributes = GetAttributes(data, colors, wish);
-  this->Parts.push_back({ data, vtkDSMTriangleList(data), colors, data->GetPoints()->GetData(),
-    FindNormals(data, this->Attributes.Normals), FindTextureCoordinates(data), this->Triangles,
-    this->Points });
+  this->Attributes = GetAttributes(data, colors, wish, solids != nullptr);
+  bricks::Attachment normalsOf;
+  this->Parts.push_back(
+    { data, solids ? vtkDSMTriangleList(data, *solids) : vtkDSMTriangleList(data), colors,
+      data->GetPoints()->GetData(), FindNormals(data, normalsOf), FindTextureCoordinates(data),
+      this->Triangles, this->Points });
   this->Triangles += this->Parts.back().List.GetCount();
   this->Points += static_cast<std::uint64_t>(data->GetNumberOfPoints());
 }
@@ -143,4 +149,10 @@ unsigned vtkDSMMeshPiece::GetEdgeFlags(std::uint64_t triangle) const
 {
   const Part& part = this->FindByTriangle(triangle);
   return part.List.GetEdgeFlags(triangle - part.FirstTriangle);
+}
+
+double vtkDSMMeshPiece::GetRadius(std::uint64_t triangle, int corner) const
+{
+  const Part& part = this->FindByTriangle(triangle);
+  return part.List.GetRadius(triangle - part.FirstTriangle, corner);
 }

@@ -26,12 +26,15 @@ struct vtkDSMMeshWish
 class vtkDSMMeshPiece final : public bricks::TriangleSource
 {
 public:
-  /// Returns the attributes of a mesh made of the data.
+  /// Returns the attributes of a mesh made of the data's polygons; `isSolid`: of its tubes and spheres.
   static bricks::MeshAttributes GetAttributes(
-    vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
+    vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish, bool isSolid);
 
-  /// All that are added must have the same attributes. Throws dsm::Error for invalid cells.
-  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish);
+  /// `solids`: for the tubes and spheres of the data instead of the polygons, or null. All that are
+  /// added must have the same attributes. Throws dsm::Error for invalid cells, and for a radius array
+  /// that cannot be used.
+  void Add(vtkPolyData* data, const vtkDSMMeshColors& colors, const vtkDSMMeshWish& wish,
+    const vtkDSMTubesAndSpheres* solids);
 
   bricks::MeshAttributes GetAttributes() const override { return this->Attributes; }
   std::uint64_t GetTriangleCount() const override { return this->Triangles; }
@@ -43,7 +46,7 @@ public:
   void GetColor(std::uint64_t element, std::uint8_t rgba[4]) const override;
   void GetTextureCoordinate(std::uint64_t point, double coordinate[2]) const override;
   unsigned GetEdgeFlags(std::uint64_t triangle) const override;
-  double GetRadius(std::uint64_t, int) const override { return 0.0; }
+  double GetRadius(std::uint64_t triangle, int corner) const override;
 
 private:
   struct Part

@@ -4,6 +4,7 @@
 #include "DSMBricks/layout/MeshAttributes.h"
 #include "DSMCore/base/Error.h"
 #include "vtkDSMCompatibility.h"
+#include "vtkDSMTubesAndSpheres.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
@@ -19,6 +20,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <cmath>
 #include <string>
 
 namespace
@@ -49,17 +51,41 @@ vtkDSMTriangleList::vtkDSMTriangleList(vtkPolyData* data)
   , FirstCell(data->GetNumberOfVerts() + data->GetNumberOfLines())
   , PointFlags(FindPointFlags(data))
 {
-  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
-    data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  if (ghosts && ghosts->GetNumberOfTuples() == data->GetNumberOfCells())
-  {
-    this->Ghosts = ghosts->GetPointer(0);
-  }
+  this->FindGhosts();
   if (!this->UseInPlace())
   {
     this->AddPolygons();
     this->AddStrips();
     this->Count = this->Cells.size();
+  }
+}
+
+vtkDSMTriangleList::vtkDSMTriangleList(vtkPolyData* data, const vtkDSMTubesAndSpheres& solids)
+  : Data(data)
+  , SphereRadius(solids.PointRadius)
+  , TubeRadius(solids.LineRadius)
+  , RadiusFactors(solids.FindFactors(data))
+{
+  this->FindGhosts();
+  if (solids.HasSpheres(data))
+  {
+    this->AddSpheres();
+  }
+  this->Spheres = this->Cells.size();
+  if (solids.HasTubes(data))
+  {
+    this->AddTubes();
+  }
+  this->Count = this->Cells.size();
+}
+
+void vtkDSMTriangleList::FindGhosts()
+{
+  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
+    this->Data->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  if (ghosts && ghosts->GetNumberOfTuples() == this->Data->GetNumberOfCells())
+  {
+    this->Ghosts = ghosts->GetPointer(0);
   }
 }
 
@@ -178,12 +204,98 @@ void vtkDSMTriangleList::AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdT
 void vtkDSMTriangleList::AddTriangle(
   vtkIdType cell, vtkIdType size, const vtkIdType* points, vtkIdType a, vtkIdType b, vtkIdType c)
 {
-  this->Corners.insert(this->Corners.end(), { points[a], points[b], points[c] });
-  this->Cells.push_back(cell);
+  this->AddCorners(cell, points[a], points[b], points[c]);
   const auto isEdge = [size](vtkIdType from, vtkIdType to)
   { return (from + 1) % size == to || (to + 1) % size == from ? 1u : 0u; };
   this->Edges.push_back(
     static_cast<std::uint8_t>(isEdge(a, b) | isEdge(b, c) << 1 | isEdge(c, a) << 2));
+}
+
+void vtkDSMTriangleList::AddCorners(vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c)
+{
+  this->Corners.insert(this->Corners.end(), { a, b, c });
+  this->Cells.push_back(cell);
+}
+
+void vtkDSMTriangleList::AddSpheres()
+{
+  vtkCellArray* vertices = this->Data->GetVerts();
+  const auto count = static_cast<std::size_t>(vertices->GetNumberOfConnectivityIds());
+  this->Corners.reserve(3 * count);
+  this->Cells.reserve(count);
+  for (vtkIdType cell = 0; cell < vertices->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    vertices->GetCellAtId(cell, size, points);
+    if (!this->IsGhost(cell))
+    {
+      this->CheckPoints(cell, size, points);
+      for (const vtkIdType* point = points; point != points + size; ++point)
+      {
+        this->AddCorners(cell, *point, *point, *point);
+      }
+    }
+  }
+}
+
+void vtkDSMTriangleList::AddTubes()
+{
+  vtkCellArray* lines = this->Data->GetLines();
+  const std::size_t most =
+    this->Cells.size() + static_cast<std::size_t>(lines->GetNumberOfConnectivityIds());
+  this->Corners.reserve(3 * most);
+  this->Cells.reserve(most);
+  std::vector<vtkIdType> run;
+  for (vtkIdType line = 0; line < lines->GetNumberOfCells(); ++line)
+  {
+    const vtkIdType cell = this->Data->GetNumberOfVerts() + line;
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    lines->GetCellAtId(line, size, points);
+    if (this->IsGhost(cell))
+    {
+      continue;
+    }
+    this->CheckPoints(cell, size, points);
+    run.clear();
+    for (const vtkIdType* point = points; point != points + size; ++point)
+    {
+      const glm::dvec3 place = GetPoint(this->Data, *point);
+      if (!std::isfinite(place.x + place.y + place.z))
+      {
+        this->AddTube(cell, run);
+        run.clear();
+      }
+      else if (run.empty() || GetPoint(this->Data, run.back()) != place)
+      {
+        run.push_back(*point);
+      }
+    }
+    this->AddTube(cell, run);
+  }
+}
+
+void vtkDSMTriangleList::AddTube(vtkIdType cell, const std::vector<vtkIdType>& points)
+{
+  const std::size_t size = points.size();
+  if (size == 2)
+  {
+    this->AddCorners(cell, points[0], points[1], points[0]);
+  }
+  if (size <= 2)
+  {
+    return;
+  }
+  // The first point of a closed line comes again behind the last one.
+  const bool isClosed = size > 3 && points.front() == points.back();
+  const std::size_t last = isClosed ? size - 2 : size - 1;
+  for (std::size_t point = 0; point <= last; ++point)
+  {
+    const std::size_t before = point > 0 ? point - 1 : isClosed ? last : 0;
+    const std::size_t behind = point < last || isClosed ? point + 1 : last;
+    this->AddCorners(cell, points[before], points[point], points[behind]);
+  }
 }
 
 void vtkDSMTriangleList::CheckPoints(vtkIdType cell, vtkIdType size, const vtkIdType* points) const
@@ -255,6 +367,18 @@ unsigned vtkDSMTriangleList::GetEdgeFlags(std::uint64_t triangle) const
     }
   }
   return flags;
+}
+
+double vtkDSMTriangleList::GetRadius(std::uint64_t triangle, int corner) const
+{
+  const double radius = triangle < this->Spheres ? this->SphereRadius : this->TubeRadius;
+  if (!this->RadiusFactors)
+  {
+    return radius;
+  }
+  const vtkIdType point = this->Corners[3 * triangle + static_cast<std::uint64_t>(corner)];
+  const double product = radius * this->RadiusFactors->GetComponent(point, 0);
+  return product > 0.0 ? product : 0.0;
 }
 
 bool vtkDSMTriangleList::NeedsEdgeFlags(vtkPolyData* data)

@@ -2,33 +2,27 @@
 #ifndef vtkDSMTubesAndSpheres_h
 #define vtkDSMTubesAndSpheres_h
 
-#include "vtkSmartPointer.h"
-
-#include <cstdint>
 #include <string>
 
+class vtkDataArray;
 class vtkPolyData;
 
-/// Surfaces around the lines and the vertices of a vtkPolyData, with the points' and the cells'
-/// arrays, and normals: what has no extent of its own cannot be hit by a ray.
-class vtkDSMTubesAndSpheres
+/// How thick the lines and the vertices of a vtkPolyData are shown, as tubes and spheres: what has no
+/// extent of its own cannot be hit by a ray.
+struct vtkDSMTubesAndSpheres
 {
-public:
-  /// Radii in the units of the points; not positive: nothing is made. `radiusArray` names a point
-  /// array that they are multiplied by, or is empty.
-  vtkDSMTubesAndSpheres(double lineRadius, double pointRadius, const std::string& radiusArray);
-
-  /// Triangles that the two methods below would make of the data, about.
-  std::uint64_t EstimateTriangles(vtkPolyData* data) const;
-
-  /// Null when there is nothing to draw. Throws dsm::Error when the radius array cannot be used.
-  vtkSmartPointer<vtkPolyData> MakeTubes(vtkPolyData* data) const;
-  vtkSmartPointer<vtkPolyData> MakeSpheres(vtkPolyData* data) const;
-
-private:
-  double LineRadius;
-  double PointRadius;
+  /// In the units of the points. Not positive: none are shown.
+  double LineRadius = 0.0;
+  double PointRadius = 0.0;
+  /// Name of a point array that the radii are multiplied by, or empty.
   std::string RadiusArray;
+
+  bool HasTubes(vtkPolyData* data) const;
+  bool HasSpheres(vtkPolyData* data) const;
+  bool HasAny(vtkPolyData* data) const { return this->HasTubes(data) || this->HasSpheres(data); }
+
+  /// Null without an array. Throws dsm::Error when it cannot be used.
+  vtkDataArray* FindFactors(vtkPolyData* data) const;
 };
 
 #endif

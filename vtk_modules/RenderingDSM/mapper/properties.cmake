@@ -67,8 +67,8 @@ dsm_setting(ShowEdges OWNER mesh OWN_METHOD TYPE bool DEFAULT 0
     look.")
 dsm_setting(LineRadius OWNER mesh TYPE double DEFAULT 0
   LABEL "Line Radius" PANEL advanced
-  TEXT "Radius of the tubes that lines are shown as, in the dataset's units. 0 uses 1/300 of the dataset's diagonal. A
-    negative number hides lines."
+  TEXT "Radius of the tubes that lines are shown as, in the dataset's units. Their ends are round. 0 uses 1/300 of the
+    dataset's diagonal. A negative number hides lines."
   DETAILS "The diagonal is that of all ranks' data.")
 dsm_setting(PointRadius OWNER mesh TYPE double DEFAULT 0
   LABEL "Point Radius" PANEL advanced
@@ -77,5 +77,6 @@ dsm_setting(PointRadius OWNER mesh TYPE double DEFAULT 0
   DETAILS "The diagonal is that of all ranks' data.")
 dsm_setting(RadiusArray OWNER mesh TYPE array ARRAYS input_array_point_1
   LABEL "Radius Array" PANEL advanced
-  TEXT "Point array that scales the radii of tubes and spheres."
-  DETAILS "It has one component. Empty: none. Where it is negative or not a number, nothing is drawn.")
+  TEXT "Point array that scales the radii of tubes and spheres. Between the points of a line, the radius changes
+    evenly."
+  DETAILS "It has one component. Empty: none. Where it is negative or not a number, the radius is 0.")
