@@ -132,11 +132,7 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
 {
   const std::size_t pixels = tile.Sum.size();
   const auto samples = static_cast<float>(this->Request.FirstSample + this->Request.Samples);
-  const auto getScale = [&, whole = glm::vec4(tint, 1.0f) / samples](std::size_t pixel)
-  {
-    return tile.Counts.empty() ? whole
-                               : glm::vec4(tint, 1.0f) / static_cast<float>(tile.Counts[pixel]);
-  };
+  glm::vec4 scale = glm::vec4(tint, 1.0f) / samples;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
   {
     const glm::vec4& sum = tile.Sum[pixel];
@@ -146,12 +142,16 @@ void TileSampler::Finish(Tile& tile, const glm::vec3& tint) const
       std::fill_n(color, 4, std::uint8_t{ 0 });
       continue;
     }
-    ConvertSum(sum, getScale(pixel), color);
+    if (!tile.Counts.empty())
+    {
+      scale = glm::vec4(tint, 1.0f) / static_cast<float>(tile.Counts[pixel]);
+    }
+    ConvertSum(sum, scale, color);
   }
   for (std::size_t pixel = 0; pixel < tile.AlbedoSum.size(); ++pixel)
   {
-    const float scale = 1.0f / static_cast<float>(tile.CountSamples(pixel));
-    ConvertSum(tile.AlbedoSum[pixel], glm::vec4(scale), &tile.Albedo[4 * pixel]);
+    const auto count = static_cast<float>(tile.CountSamples(pixel));
+    ConvertSum(tile.AlbedoSum[pixel], glm::vec4(1.0f / count), &tile.Albedo[4 * pixel]);
   }
   for (std::size_t pixel = 0; pixel < tile.NormalSum.size(); ++pixel)
   {
@@ -249,6 +249,11 @@ void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) c
     {
       AddMoreChannels(samples[number], sample, tile);
     }
+    for (int number = 0; !tile.Squares.empty() && number < samples.GetCount(); ++number)
+    {
+      const glm::vec4& color = samples[number].Color;
+      tile.Squares[GetPixel(samples[number], tile)] += glm::dot(color, color);
+    }
   }
   SetCounts(sample, box, tile);
 }
@@ -315,10 +320,6 @@ void TileSampler::AddSample(const PixelSample& traced, Tile& tile)
   if (tile.Layers == 1)
   {
     tile.Sum[pixel] += traced.Color;
-    if (!tile.Squares.empty())
-    {
-      tile.Squares[pixel] += glm::dot(traced.Color, traced.Color);
-    }
     // A pixel is as near as the nearest of its samples, so that a surface's antialiased
     // border still covers what is behind.
     tile.Depth[pixel] = std::min(tile.Depth[pixel], traced.Depth);
