@@ -187,6 +187,7 @@ TEST_F(VolumeMapper, RefinesThePicturesOfBothEyes)
 {
   this->Renderer->AddVolume(this->Volume);
   this->Mapper->GetLightOptions()->SetSamplesPerPixel(2);
+  this->Mapper->GetLightOptions()->SetAmbientOcclusionSamples(30); // takes long
   this->Window->SetStereoTypeToRedBlue();
   this->Window->StereoRenderOn();
   const auto whole = this->Draw(this->Mapper);
@@ -245,6 +246,7 @@ TEST_F(VolumeMapper, EndsFramesInTimeWithoutHoles)
 {
   this->Renderer->AddVolume(this->Volume);
   this->Mapper->GetLightOptions()->SetSamplesPerPixel(2);
+  this->Mapper->GetLightOptions()->SetAmbientOcclusionSamples(30); // takes long
   const std::vector<double> first = this->RenderDistances();
   const int covered = CountCovered(first);
   this->Scene->SetSamplesPerFrame(1);
