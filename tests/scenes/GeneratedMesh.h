@@ -177,7 +177,7 @@ inline Mesh CreateTubes(int lines)
     }
     const int points = 2 + line % 8;
     const std::uint64_t first = mesh.GetPointCount();
-    const std::uint64_t last = first + static_cast<std::uint64_t>(points - 1);
+    const std::uint64_t sphere = first + static_cast<std::uint64_t>(points);
     for (int point = 0; point <= points; ++point)
     {
       AddPoint(mesh, place, place, static_cast<double>(point) / points, Random(line, 12));
@@ -187,16 +187,8 @@ inline Mesh CreateTubes(int lines)
         place[axis] += 0.4 * Random(line, point, 14 + axis) - 0.2;
       }
     }
-    for (std::uint64_t point = first; point <= last; ++point)
-    {
-      const std::uint64_t before = point > first ? point - 1 : first;
-      const std::uint64_t behind = points == 2 ? before : point < last ? point + 1 : last;
-      if (points > 2 || point == last)
-      {
-        mesh.Triangles.insert(mesh.Triangles.end(), { before, point, behind });
-      }
-    }
-    mesh.Triangles.insert(mesh.Triangles.end(), { last + 1, last + 1, last + 1 });
+    mesh.AddLine(first, static_cast<std::uint64_t>(points));
+    mesh.Triangles.insert(mesh.Triangles.end(), { sphere, sphere, sphere });
     mesh.Radii.back() = 0.15 * Random(line, 17);
   }
   mesh.Normals.clear();

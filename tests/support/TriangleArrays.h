@@ -40,6 +40,23 @@ public:
     attributes.Radii = !this->Radii.empty();
     return attributes;
   }
+
+  /// Adds the tube along `count` points from `first` on; see bricks::TriangleSource.
+  void AddLine(std::uint64_t first, std::uint64_t count)
+  {
+    const std::uint64_t last = first + count - 1;
+    if (count == 2)
+    {
+      this->Triangles.insert(this->Triangles.end(), { first, last, first });
+      return;
+    }
+    for (std::uint64_t point = first; point <= last; ++point)
+    {
+      this->Triangles.insert(this->Triangles.end(),
+        { std::max(point, first + 1) - 1, point, std::min(point + 1, last) });
+    }
+  }
+
   std::uint64_t GetTriangleCount() const override { return this->Triangles.size() / 3; }
   std::uint64_t GetPointCount() const override { return this->Positions.size() / 3; }
   void GetTriangle(std::uint64_t triangle, std::uint64_t points[3]) const override

@@ -254,7 +254,7 @@ Mesh CreateHelix(int points, double radius, double thickness)
       { radius * std::cos(8.0 * part), radius * std::sin(8.0 * part), 1.6 * part - 0.8 },
       thickness * (1.0 + 0.3 * std::sin(20.0 * part)));
   }
-  AddLine(mesh, 0, static_cast<std::uint64_t>(points));
+  mesh.AddLine(0, static_cast<std::uint64_t>(points));
   return mesh;
 }
 
@@ -272,7 +272,7 @@ Mesh CreateRod(
   Mesh mesh;
   AddPoint(mesh, first, firstRadius);
   AddPoint(mesh, second, secondRadius);
-  AddLine(mesh, 0, 2);
+  mesh.AddLine(0, 2);
   return mesh;
 }
 
@@ -361,7 +361,7 @@ TEST(Tubes, BendsHaveNeitherHolesNorWalls)
     AddPoint(mesh, { -1.0, 0.0, 0.0 }, 0.2);
     AddPoint(mesh, { 0.0, 0.0, 0.0 }, bend % 2 == 0 ? 0.2 : 0.3);
     AddPoint(mesh, { std::cos(angle), std::sin(angle), 0.0 }, bend % 3 == 0 ? 0.2 : 0.1);
-    AddLine(mesh, 0, 3);
+    mesh.AddLine(0, 3);
     CompareAllHits(mesh, CreateRays(100, static_cast<unsigned>(bend), glm::dvec3(0.0), 0.3), 1e-8);
   }
 }

@@ -10,22 +10,6 @@ namespace TestTubes
 
 using namespace TestMesh;
 
-/// Adds the triangles of a line through points of the mesh, from `first` on; see bricks::TriangleSource.
-inline void AddLine(Mesh& mesh, std::uint64_t first, std::uint64_t count)
-{
-  const std::uint64_t last = first + count - 1;
-  if (count == 2)
-  {
-    mesh.Triangles.insert(mesh.Triangles.end(), { first, last, first });
-    return;
-  }
-  for (std::uint64_t point = first; point <= last; ++point)
-  {
-    mesh.Triangles.insert(
-      mesh.Triangles.end(), { std::max(point, first + 1) - 1, point, std::min(point + 1, last) });
-  }
-}
-
 inline void AddPoint(Mesh& mesh, const glm::dvec3& position, double radius)
 {
   // As bricks have them.
@@ -54,7 +38,7 @@ inline Mesh CreateTubes(int lines, int spheres, unsigned seed)
       AddPoint(mesh, place, 0.02 + 0.015 * uniform(random));
       place += 0.15 * getVector();
     }
-    AddLine(mesh, first, count);
+    mesh.AddLine(first, count);
   }
   for (int sphere = 0; sphere < spheres; ++sphere)
   {

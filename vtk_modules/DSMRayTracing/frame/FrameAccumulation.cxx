@@ -140,7 +140,7 @@ FrameAccumulation::Result FrameAccumulation::TraceOnce(const Ranks& ranks, const
     }
   }
   this->Samples = request.FirstSample + request.Samples;
-  const bool isForAll = request.Tolerance == 0.0f || this->Samples <= FrameRequest::SureSamples;
+  const bool isForAll = !request.MayStop() || this->Samples <= FrameRequest::SureSamples;
   this->LastSamples = isForAll ? request.Samples : 0;
   return Result::Traced;
 }

@@ -48,6 +48,9 @@ struct FrameRequest
   /// Channels of each pixel of the image.
   ChannelSet Channels;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
+
+  /// Returns whether pixels may get fewer samples than others.
+  bool MayStop() const { return this->Tolerance > 0.0f && this->Layers == 1; }
 };
 
 } // namespace rt

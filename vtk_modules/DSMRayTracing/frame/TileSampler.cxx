@@ -109,9 +109,8 @@ void TileSampler::Trace(Tile& tile) const
     tile.OpenSum.assign(isForFilter ? pixels : 0, glm::vec3(0.0f));
     tile.ArrivingSquares.assign(isForFilter ? pixels : 0, 0.0f);
     tile.Normals.assign(isForFilter ? pixels : 0, PackedNormal());
-    const bool mayStop = this->Request.Tolerance > 0.0f && tile.Layers == 1;
-    tile.Counts.assign(mayStop ? pixels : 0, 0);
-    tile.Squares.assign(mayStop ? pixels : 0, 0.0f);
+    tile.Counts.assign(this->Request.MayStop() ? pixels : 0, 0);
+    tile.Squares.assign(this->Request.MayStop() ? pixels : 0, 0.0f);
   }
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
@@ -287,7 +286,7 @@ bool TileSampler::FindPixel(const Tile& tile, const PixelBox& box, const Is& is)
 /// Returns whether any pixel has got all samples so far.
 bool TileSampler::IsOpen(const Tile& tile, const PixelBox& box) const
 {
-  return tile.Counts.empty() || this->Request.FirstSample == 0 ||
+  return tile.Counts.empty() ||
     FindPixel(tile, box,
       [&](std::size_t pixel)
       { return static_cast<int>(tile.Counts[pixel]) == this->Request.FirstSample; });

@@ -65,11 +65,14 @@ struct MeshHit
       this->Corners[corner] = { position[0], position[1], position[2] };
       corners[corner] = this->Corners[corner];
     }
-    const glm::dvec3 upright =
-      instance.TurnNormal(has.Radii ? instance.PlaceInBricks(ray.Origin + this->T * ray.Direction) -
-            (this->Weights[0] * corners[0] + this->Weights[1] * corners[1] +
-              this->Weights[2] * corners[2])
-                                    : glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    glm::dvec3 upright = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (has.Radii)
+    {
+      upright = instance.PlaceInBricks(ray.Origin + this->T * ray.Direction) -
+        (this->Weights[0] * corners[0] + this->Weights[1] * corners[1] +
+          this->Weights[2] * corners[2]);
+    }
+    upright = instance.TurnNormal(upright);
     const double length = glm::length(upright);
     this->GeometricNormal = length > 0.0 ? upright / length : -glm::normalize(ray.Direction);
     this->Normal = this->GeometricNormal;

@@ -49,8 +49,7 @@ public:
 private:
   void Take(double t, bool front, double ball, int first, int second)
   {
-    if (t >= this->Ray.Min && t <= (this->Found ? this->Nearest.T : this->Ray.Max) &&
-      !(this->Found && t == this->Nearest.T))
+    if (t >= this->Ray.Min && (this->Found ? t < this->Nearest.T : t <= this->Ray.Max))
     {
       this->Found = true;
       this->Nearest.T = t;

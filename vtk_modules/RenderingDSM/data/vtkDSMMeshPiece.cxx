@@ -62,11 +62,10 @@ void vtkDSMMeshPiece::Add(vtkPolyData* data, const vtkDSMMeshColors& colors,
   const vtkDSMMeshWish& wish, const vtkDSMTubesAndSpheres* solids)
 {
   this->Attributes = GetAttributes(data, colors, wish, solids != nullptr);
-  bricks::Attachment normalsOf;
   this->Parts.push_back(
     { data, solids ? vtkDSMTriangleList(data, *solids) : vtkDSMTriangleList(data), colors,
-      data->GetPoints()->GetData(), FindNormals(data, normalsOf), FindTextureCoordinates(data),
-      this->Triangles, this->Points });
+      data->GetPoints()->GetData(), solids ? nullptr : FindNormals(data, this->Attributes.Normals),
+      FindTextureCoordinates(data), this->Triangles, this->Points });
   this->Triangles += this->Parts.back().List.GetCount();
   this->Points += static_cast<std::uint64_t>(data->GetNumberOfPoints());
 }

@@ -125,6 +125,24 @@ bool vtkDSMTriangleList::UseInPlace()
   return true;
 }
 
+template <class Visit>
+void vtkDSMTriangleList::VisitCells(
+  vtkCellArray* cells, vtkIdType first, vtkIdType least, const Visit& visit)
+{
+  for (vtkIdType index = 0; index < cells->GetNumberOfCells(); ++index)
+  {
+    const vtkIdType cell = first + index;
+    vtkIdType size = 0;
+    const vtkIdType* points = nullptr;
+    cells->GetCellAtId(index, size, points);
+    if (size >= least && !this->IsGhost(cell))
+    {
+      this->CheckPoints(cell, size, points);
+      visit(cell, size, points);
+    }
+  }
+}
+
 void vtkDSMTriangleList::AddPolygons()
 {
   vtkCellArray* polygons = this->Data->GetPolys();
@@ -132,44 +150,25 @@ void vtkDSMTriangleList::AddPolygons()
   this->Corners.reserve(3 * most);
   this->Cells.reserve(most);
   this->Edges.reserve(most);
-  for (vtkIdType index = 0; index < polygons->GetNumberOfCells(); ++index)
-  {
-    const vtkIdType cell = this->FirstCell + index;
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    polygons->GetCellAtId(index, size, points);
-    if (size >= 3 && !this->IsGhost(cell))
-    {
-      this->CheckPoints(cell, size, points);
-      this->AddPolygon(cell, size, points);
-    }
-  }
+  this->VisitCells(polygons, this->FirstCell, 3,
+    [this](vtkIdType cell, vtkIdType size, const vtkIdType* points)
+    { this->AddPolygon(cell, size, points); });
 }
 
 void vtkDSMTriangleList::AddStrips()
 {
-  vtkCellArray* strips = this->Data->GetStrips();
-  const vtkIdType first = this->FirstCell + this->Data->GetNumberOfPolys();
-  for (vtkIdType index = 0; index < strips->GetNumberOfCells(); ++index)
-  {
-    const vtkIdType cell = first + index;
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    strips->GetCellAtId(index, size, points);
-    if (this->IsGhost(cell))
+  this->VisitCells(this->Data->GetStrips(), this->FirstCell + this->Data->GetNumberOfPolys(), 0,
+    [this](vtkIdType cell, vtkIdType size, const vtkIdType* points)
     {
-      continue;
-    }
-    this->CheckPoints(cell, size, points);
-    for (vtkIdType corner = 2; corner < size; ++corner)
-    {
-      // Every other triangle is the other way round.
-      const vtkIdType odd = corner & 1;
-      const vtkIdType turned[3] = { points[corner - 2 + odd], points[corner - 1 - odd],
-        points[corner] };
-      this->AddTriangle(cell, 3, turned, 0, 1, 2);
-    }
-  }
+      for (vtkIdType corner = 2; corner < size; ++corner)
+      {
+        // Every other triangle is the other way round.
+        const vtkIdType odd = corner & 1;
+        const vtkIdType turned[3] = { points[corner - 2 + odd], points[corner - 1 - odd],
+          points[corner] };
+        this->AddTriangle(cell, 3, turned, 0, 1, 2);
+      }
+    });
 }
 
 void vtkDSMTriangleList::AddPolygon(vtkIdType cell, vtkIdType size, const vtkIdType* points)
@@ -223,20 +222,14 @@ void vtkDSMTriangleList::AddSpheres()
   const auto count = static_cast<std::size_t>(vertices->GetNumberOfConnectivityIds());
   this->Corners.reserve(3 * count);
   this->Cells.reserve(count);
-  for (vtkIdType cell = 0; cell < vertices->GetNumberOfCells(); ++cell)
-  {
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    vertices->GetCellAtId(cell, size, points);
-    if (!this->IsGhost(cell))
+  this->VisitCells(vertices, 0, 0,
+    [this](vtkIdType cell, vtkIdType size, const vtkIdType* points)
     {
-      this->CheckPoints(cell, size, points);
       for (const vtkIdType* point = points; point != points + size; ++point)
       {
         this->AddCorners(cell, *point, *point, *point);
       }
-    }
-  }
+    });
 }
 
 void vtkDSMTriangleList::AddTubes()
@@ -247,33 +240,25 @@ void vtkDSMTriangleList::AddTubes()
   this->Corners.reserve(3 * most);
   this->Cells.reserve(most);
   std::vector<vtkIdType> run;
-  for (vtkIdType line = 0; line < lines->GetNumberOfCells(); ++line)
-  {
-    const vtkIdType cell = this->Data->GetNumberOfVerts() + line;
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    lines->GetCellAtId(line, size, points);
-    if (this->IsGhost(cell))
+  this->VisitCells(lines, this->Data->GetNumberOfVerts(), 0,
+    [&](vtkIdType cell, vtkIdType size, const vtkIdType* points)
     {
-      continue;
-    }
-    this->CheckPoints(cell, size, points);
-    run.clear();
-    for (const vtkIdType* point = points; point != points + size; ++point)
-    {
-      const glm::dvec3 place = GetPoint(this->Data, *point);
-      if (!std::isfinite(place.x + place.y + place.z))
+      run.clear();
+      for (const vtkIdType* point = points; point != points + size; ++point)
       {
-        this->AddTube(cell, run);
-        run.clear();
+        const glm::dvec3 place = GetPoint(this->Data, *point);
+        if (!std::isfinite(place.x + place.y + place.z))
+        {
+          this->AddTube(cell, run);
+          run.clear();
+        }
+        else if (run.empty() || GetPoint(this->Data, run.back()) != place)
+        {
+          run.push_back(*point);
+        }
       }
-      else if (run.empty() || GetPoint(this->Data, run.back()) != place)
-      {
-        run.push_back(*point);
-      }
-    }
-    this->AddTube(cell, run);
-  }
+      this->AddTube(cell, run);
+    });
 }
 
 void vtkDSMTriangleList::AddTube(vtkIdType cell, const std::vector<vtkIdType>& points)

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+class vtkCellArray;
 class vtkDataArray;
 class vtkPolyData;
 class vtkUnsignedCharArray;
@@ -52,6 +53,10 @@ private:
 
   void FindGhosts();
   bool UseInPlace();
+  /// Calls `visit(cell, size, points)` for those of the cells, counted from `first`, that have at least so many points
+  /// and are no ghosts.
+  template <class Visit>
+  void VisitCells(vtkCellArray* cells, vtkIdType first, vtkIdType least, const Visit& visit);
   void AddSpheres();
   void AddTubes();
   /// Adds the tube along points at different places.

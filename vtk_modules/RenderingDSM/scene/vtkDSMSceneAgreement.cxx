@@ -345,7 +345,6 @@ int vtkDSMScene::Internals::AgreeOnView(
   if (request.Layers > 1)
   {
     request.Channels.Value &= ~rt::LightFilter::Channels;
-    request.Tolerance = 0.0f;
   }
   scene.Transport.Background = view.Background.Lower;
   const auto strength = static_cast<float>(this->Light->GetEnvironmentLight());
