@@ -14,6 +14,10 @@ void BenchmarkOptions::AddTo(CLI::App& app)
   app.add_option("--filter", this->Filter,
     "on: the result compares a picture of one sample, whose light is filtered, with those of 16 "
     "and 256 (default off)");
+  app.add_option("--looks", this->Looks,
+    "on: the result compares pictures in other colors and light, of hits that are known, with the "
+    "first one "
+    "(default off)");
   this->VolumeOptions::AddTo(app);
   app.get_option("--occlusion")
     ->description(

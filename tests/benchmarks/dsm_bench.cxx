@@ -7,6 +7,7 @@
 #include "CellBenchmark.h"
 #include "DelayedTransport.h"
 #include "FilterBenchmark.h"
+#include "LookBenchmark.h"
 #include "MediumBenchmark.h"
 #include "MeshBenchmark.h"
 #include "PictureFile.h"
@@ -346,6 +347,9 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
   const Camera first =
     GetCamera(object.Field, static_cast<double>(options.Width) / options.Height, positions.front());
   scene.Lights.front() = CreateLamp(options, first);
+  const Json looks = options.Looks ? BenchmarkLooks(messenger, store, renderer, scene,
+                                       CreateRequest(options, first), options.Repeat)
+                                   : Json();
   const Json filter = options.Filter ? BenchmarkFilter(messenger, store, renderer, scene,
                                          CreateRequest(options, first), options.Repeat)
                                      : Json();
@@ -366,6 +370,10 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
     {
       result.update(rates);
     }
+    if (options.Looks)
+    {
+      result["looks"] = looks;
+    }
     if (options.Filter)
     {
       result["filter"] = filter;
@@ -383,6 +391,10 @@ void RunIsosurface(const BenchmarkOptions& options, dsm::Messenger& messenger)
            << " million light rays/s (" << rates["light_over_primary"].get<double>()
            << "); the frame takes " << rates["frame_over_primary_frame"].get<double>()
            << " times that of primary rays\n";
+    }
+    if (options.Looks)
+    {
+      text << "other looks over the first one: " << looks.dump() << '\n';
     }
     if (options.Filter)
     {

@@ -122,6 +122,7 @@ private:
   {
     rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
     request.Scheduling = this->Scheduling;
+    request.KeepsHits = true;
     const auto offers = this->Ranks.GatherValueTogether(
       "Testing", [&] { return view.CreateOffer(this->Store, look.Scene, request, Samples, pace); });
     return view.Trace({ this->Ranks, this->Renderer, this->Store }, offers, look.Scene, request,

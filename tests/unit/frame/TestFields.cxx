@@ -214,8 +214,17 @@ private:
         build([&](const Quadratic& function) { return Kind::Publish(function, messenger, store); },
           scene);
         rt::FrameRenderer renderer(messenger);
-        rt::Picture whole =
-          rt::GatherFrame(messenger, renderer.Render(store, scene, CreateRequest()));
+        rt::FrameRequest request = CreateRequest();
+        request.KeepsHits = true;
+        if (scene.Media.empty())
+        {
+          // The picture is made of the hits of another one.
+          rt::Scene unlit = scene;
+          unlit.Lights.clear();
+          unlit.Transport = {};
+          renderer.Render(store, unlit, request);
+        }
+        rt::Picture whole = rt::GatherFrame(messenger, renderer.Render(store, scene, request));
         if (messenger.GetRank() == 0)
         {
           picture = std::move(whole);

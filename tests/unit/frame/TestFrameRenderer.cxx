@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/InterruptedView.h"
 #include "tests/support/LoopbackCluster.h"
+#include "tests/support/MeshScene.h"
 #include "tests/support/PictureHash.h"
 #include "tests/support/SphereScene.h"
 
 #include "DSMRayTracing/frame/FrameGather.h"
 #include "DSMRayTracing/frame/FrameRenderer.h"
+#include "DSMRayTracing/frame/KeptHits.h"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +15,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <random>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -407,6 +413,99 @@ TEST(TestFrameRenderer, SamplesAddedLaterGiveTheSamePicture)
         }
       });
   }
+}
+
+/// Changes of a look, and of what rays meet. The scene is MeshScene's.
+TEST(FrameRendererOnLoopback, PicturesOfKnownHitsAreThose)
+{
+  const auto getBall = [](rt::Scene& scene) -> rt::LatticeIsosurface&
+  { return std::get<rt::LatticeIsosurface>(scene.Objects[0]); };
+  const auto getBlob = [](rt::Scene& scene) -> rt::MeshObject&
+  { return std::get<rt::MeshObject>(scene.Objects[1]); };
+  using Change = std::function<void(rt::Scene&, rt::FrameRequest&)>;
+  const std::vector<Change> changes{
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBall(scene).Look.Surface.Opacity = 1.0f; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBall(scene).Look.Surface.DiffuseColor.x = 0.2f; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBall(scene).Look.CullsFront = true; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBall(scene).Look.Surface.Opacity = 0.0f; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBlob(scene).Look.BackSurface.reset(); },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBlob(scene).Look.Surface.Opacity = 0.0f; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBlob(scene).Look.Flat = true; },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBlob(scene).Look.Surface.Reflectivity = 0.5f; },
+    [](rt::Scene& scene, rt::FrameRequest&) { scene.Lights.front().Direction.x *= -1.0; },
+    [](rt::Scene& scene, rt::FrameRequest&) { scene.Transport.Shadows = false; },
+    [](rt::Scene& scene, rt::FrameRequest&) { scene.View = rt::DebugView::Brick; },
+    [](rt::Scene&, rt::FrameRequest& request) { request.Channels.Value = rt::ChannelSet::All; },
+    [](rt::Scene&, rt::FrameRequest& request) { request.Layers = 3; },
+    [](rt::Scene& scene, rt::FrameRequest&)
+    {
+      scene.Transport.AmbientOcclusionSamples = 1;
+      scene.Transport.AmbientOcclusionDistance = 5.0;
+    },
+    // These have other hits.
+    [](rt::Scene&, rt::FrameRequest& request) { request.WorldToClip[3][0] += 0.1; },
+    [](rt::Scene&, rt::FrameRequest& request)
+    { request.Limits = std::make_shared<const std::vector<float>>(97 * 61, 0.95f); },
+    [&](rt::Scene& scene, rt::FrameRequest&) { getBall(scene).Isovalues = { 0.6 }; },
+    [&](rt::Scene& scene, rt::FrameRequest&) {
+      getBall(scene).Clipping.HalfSpaces.push_back({ { 1.0, 0.0, 0.0 }, glm::dvec3(14.0) });
+    },
+    [&](rt::Scene& scene, rt::FrameRequest&) {
+      getBlob(scene).Clipping.HalfSpaces.push_back({ { 1.0, 0.0, 0.0 }, glm::dvec3(24.0) });
+    },
+    [](rt::Scene& scene, rt::FrameRequest&) { scene.Objects.erase(scene.Objects.begin() + 1); },
+  };
+  // Of the smaller memory, hits get less than a picture's.
+  for (const auto& [ranks, memory] :
+    { std::pair(2, std::uint64_t(1) << 30), std::pair(1, std::uint64_t(1) << 24) })
+  {
+    RunOnCluster(ranks,
+      [&, memory = memory](dsm::Messenger& messenger)
+      {
+        auto settings = SphereScene::CreateSettings(std::size_t(1) << 20, 2);
+        settings.MemoryBytes = memory;
+        dsm::BlockStore store(messenger, settings);
+        const rt::Scene scene = MeshScene::Create(messenger, store);
+        rt::FrameRenderer renderer(messenger);
+        rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+        request.Samples = rt::KeptHits::MostSamples + 1;
+        const auto trace = [&](const rt::Scene& some, rt::FrameRequest own, bool keepsHits)
+        {
+          own.KeepsHits = keepsHits;
+          return GetPictureHash(rt::GatherFrame(messenger, renderer.Render(store, some, own)));
+        };
+        for (std::size_t change = 0; change < changes.size(); ++change)
+        {
+          rt::Scene other = scene;
+          rt::FrameRequest otherRequest = request;
+          changes[change](other, otherRequest);
+          rt::FrameRenderer fresh(messenger);
+          otherRequest.KeepsHits = false;
+          const std::uint64_t expected =
+            GetPictureHash(rt::GatherFrame(messenger, fresh.Render(store, other, otherRequest)));
+          trace(scene, request, true);
+          EXPECT_EQ(trace(other, otherRequest, true), expected) << "change " << change;
+          EXPECT_EQ(trace(other, otherRequest, false), expected) << "change " << change;
+        }
+      });
+  }
+}
+
+TEST(FrameRendererOnLoopback, NewLooksNeedNoBricks)
+{
+  RunOnCluster(1,
+    [](dsm::Messenger& messenger)
+    {
+      dsm::BlockStore store(messenger, SphereScene::CreateSettings(std::size_t(1) << 30, 2));
+      rt::Scene scene = SphereScene::CreateScene(SphereScene::Publish(messenger, store), 1.0f);
+      rt::FrameRenderer renderer(messenger);
+      rt::FrameRequest request = SphereScene::CreateRequest(97, 61);
+      request.KeepsHits = true;
+      EXPECT_GT(renderer.Render(store, scene, request).Counters.Workers.Accesses, 0u);
+      std::get<rt::LatticeIsosurface>(scene.Objects[0]).Look.Surface.DiffuseColor.x = 0.3f;
+      scene.Lights.front().Direction.x *= -1.0;
+      EXPECT_EQ(renderer.Render(store, scene, request).Counters.Workers.Accesses, 0u);
+    });
 }
 
 TEST(FrameRendererOnLoopback, PicturesOfAnInterruptedViewAreRight)

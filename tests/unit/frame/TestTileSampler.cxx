@@ -114,7 +114,7 @@ private:
   static rt::PixelSample SampleAlone(const rt::PixelSampler& sampler, int x, int y, int sample)
   {
     rt::PixelSampler::Samples samples;
-    sampler.Sample(nullptr, x, y, 1, 1, sample, samples);
+    sampler.Sample(nullptr, x, y, 1, 1, sample, {}, samples);
     return samples.GetCount() > 0 ? samples[0] : rt::PixelSample();
   }
 

@@ -3,6 +3,7 @@
 
 #include "DSMRayTracing/frame/FieldReading.h"
 #include "DSMRayTracing/frame/FrameTracing.h"
+#include "DSMRayTracing/frame/SceneDigest.h"
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileSource.h"
 
@@ -23,6 +24,17 @@ namespace
 double SecondsSince(std::chrono::steady_clock::time_point start)
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Most bytes of the first hits that a rank keeps: also of its memory limit, so many parts.
+constexpr std::size_t MostBytesForHits = std::size_t{ 256 } << 20;
+constexpr std::uint64_t PartsForHits = 16;
+
+std::size_t GetBytesForHits(const dsm::BlockStore::Settings& settings)
+{
+  return settings.MemoryBytes == 0 ? MostBytesForHits
+                                   : static_cast<std::size_t>(std::min<std::uint64_t>(
+                                       MostBytesForHits, settings.MemoryBytes / PartsForHits));
 }
 
 /// What a frame did before it was aborted.
@@ -201,6 +213,14 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
     traced.Seconds = earlier.Seconds + SecondsSince(start);
     return records.Report ? records.Report(traced) : std::vector<std::byte>();
   };
+  bool usesHits = false;
+  this->Messenger.Insist(
+    [&]
+    {
+      usesHits = this->Hits.Begin(GetSurfaceDigest(scene, request),
+        TileGrid(request.Width, request.Height, request.TileSize).GetCount(),
+        GetBytesForHits(store.GetSettings()), request.KeepsHits);
+    });
   const std::shared_ptr<const BeamHistory> history = last ? last->Beams : frame.Beams;
   dsm::WorkerSlots& slots = store.GetSlots();
   slots.BeginFrame(store.GetSettings().Workers);
@@ -209,8 +229,8 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
     {
       blocks.BeginFrame(agreed);
       FrameTracing<std::decay_t<decltype(blocks)>> tracing(blocks,
-        { this->Messenger, this->Pool, slots, this->Watch, scene, request, history.get(), tiles,
-          report });
+        { this->Messenger, this->Pool, slots, this->Watch, scene, request, history.get(),
+          usesHits ? &this->Hits : nullptr, tiles, report });
       tracing.Trace(makePlan);
       tracing.GiveTo(frame);
     });

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameEntry.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/KeptHits.h"
 #include "DSMRayTracing/frame/LightFilter.h"
 #include "DSMRayTracing/frame/WorkerPool.h"
 #include "DSMRayTracing/scene/FieldReader.h"
@@ -97,6 +98,7 @@ private:
   WorkStealingScheduler Stealing;
   WorkerPool Pool;
   LightFilter Filter;
+  KeptHits Hits; ///< of any pictures
   std::function<bool(double)> Watch;
 };
 

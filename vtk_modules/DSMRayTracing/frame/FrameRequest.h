@@ -48,6 +48,8 @@ struct FrameRequest
   /// Channels of each pixel of the image.
   ChannelSet Channels;
   TileScheduling Scheduling = TileScheduling::WorkStealing;
+  /// The next picture may show the same surfaces from the same place: KeptHits.
+  bool KeepsHits = false;
 
   /// Returns whether pixels may get fewer samples than others.
   bool MayStop() const { return this->Tolerance > 0.0f && this->Layers == 1; }

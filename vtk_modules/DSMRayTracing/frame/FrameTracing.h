@@ -8,6 +8,7 @@
 #include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/Frame.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/KeptHits.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/ServedWork.h"
 #include "DSMRayTracing/frame/TileSampler.h"
@@ -49,6 +50,7 @@ public:
     const rt::Scene& Scene;
     const FrameRequest& Request;
     const BeamHistory* Last; ///< history of the view's last frame; may be null
+    KeptHits* Hits;          ///< null: none are known or kept
     TileSource& Tiles;
     /// For all ranks, when this one has traced its part; see FrameRenderer::Records.
     dsm::FunctionRef<std::vector<std::byte>(Frame&)> Report;
@@ -120,7 +122,7 @@ private:
     bool looksAhead = true;   // as long as bricks are absent
     const SceneTracers tracers = CreateSceneTracers(this->Blocks, worker, this->In.Scene);
     const TileSampler sampler(
-      tracers, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get());
+      tracers, this->In.Scene, *this->Rays, this->In.Request, this->Beams.get(), this->In.Hits);
     while (std::optional<Tile> tile = this->In.Tiles.Pop(this->In.Slots))
     {
       const double start = GetThreadSeconds();

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace rt
@@ -28,6 +29,16 @@ std::vector<const ObjectTracer*> GetAll(const ObjectTracers& objects)
   for (const auto& object : objects)
   {
     all.push_back(object.get());
+  }
+  return all;
+}
+
+std::vector<const ObjectTracer*> GetByNumber(const ObjectTracers& objects)
+{
+  std::vector<const ObjectTracer*> all(objects.size());
+  for (const auto& object : objects)
+  {
+    all[static_cast<std::size_t>(object->GetNumber())] = object.get();
   }
   return all;
 }
@@ -82,6 +93,7 @@ struct PixelSampler::Mirrored
 PixelSampler::PixelSampler(
   const SceneTracers& tracers, const Scene& scene, const PixelRays& rays, ChannelSet channels)
   : Finders(tracers.GetBeamFinders())
+  , Objects(GetByNumber(tracers.Objects))
   , Surfaces(GetAll(tracers.Objects))
   , Media(tracers)
   , Integrals(tracers)
@@ -114,16 +126,20 @@ SceneBeam PixelSampler::FindBeam(int x, int y, int width, int height) const
   return beam;
 }
 
-void PixelSampler::Sample(
-  SceneBeam* beam, int x, int y, int width, int height, int sample, Samples& samples) const
+void PixelSampler::Sample(SceneBeam* beam, int x, int y, int width, int height, int sample,
+  const FirstHits& hits, Samples& samples) const
 {
+  const glm::ivec2 corner(x, y);
+  // Rays that meet nothing show nothing but media.
+  const bool areAllWanted = !hits.Known || !this->Media.IsEmpty();
   const glm::dvec2 position = SampleSequence::GetPositionInPixel(sample);
   Ray rays[MaxRays];
   RayMask wanted = 0;
   for (int index = 0; index < MaxRays; ++index)
   {
     const glm::ivec2 place = GetPlace(index);
-    if (place.x < width && place.y < height)
+    if (place.x < width && place.y < height &&
+      (areAllWanted || hits.Known->Has(hits.GetPlace(corner + place))))
     {
       rays[index] = this->Rays.GetRay(x + place.x, y + place.y, position);
       wanted |= GetBit(index);
@@ -138,12 +154,13 @@ void PixelSampler::Sample(
   Paths paths;
   this->Follow(
     beam, rays, wanted, this->World.Transport.MaxBounces,
+    [&](ObjectHit* first) { return this->FindFirst(rays, wanted, beam, hits, corner, first); },
     [&](int index) -> LightPath&
     {
       LightPath& path = paths.Add();
       path.Index = index;
       path.Layers = &samples.Add();
-      path.Layers->Pixel = glm::ivec2(x, y) + GetPlace(index);
+      path.Layers->Pixel = corner + GetPlace(index);
       path.Random = SampleSequence(path.Layers->Pixel.x, path.Layers->Pixel.y, sample);
       path.ToViewer = -glm::normalize(rays[index].Direction);
       path.View = &this->Rays.GetView();
@@ -167,14 +184,36 @@ void PixelSampler::Sample(
   }
 }
 
-template <class GetPath>
-RayMask PixelSampler::FindSurfaces(
-  Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const
+RayMask PixelSampler::FindFirst(Ray* rays, RayMask wanted, SceneBeam* beam, const FirstHits& known,
+  const glm::ivec2& corner, ObjectHit* hits) const
+{
+  const auto getPlace = [&](int index) { return known.GetPlace(corner + rt::GetPlace(index)); };
+  if (known.Known)
+  {
+    const RayMask found =
+      FindRays(wanted, [&](int index) { return known.Known->Has(getPlace(index)); });
+    ForEachRay(found,
+      [&](int index)
+      { known.Known->Get(getPlace(index), this->Objects.data(), rays[index], hits[index]); });
+    return found;
+  }
+  const RayMask found = this->Surfaces.Find(rays, wanted, beam, hits);
+  if (known.Kept)
+  {
+    ForEachRay(
+      found, [&](int index) { known.Kept->Add(getPlace(index), rays[index], hits[index]); });
+  }
+  return found;
+}
+
+template <class Find, class GetPath>
+RayMask PixelSampler::DescribeSurfaces(
+  const Ray* rays, const Find& find, const GetPath& getPath) const
 {
   ObjectHit hits[MaxRays];
   SurfacePoint* points[MaxRays];
   const PictureView* views[MaxRays];
-  const RayMask found = this->Surfaces.Find(rays, wanted, beam, hits);
+  const RayMask found = find(hits);
   ForEachRay(found,
     [&](int index)
     {
@@ -194,9 +233,9 @@ RayMask PixelSampler::FindSurfaces(
   return found;
 }
 
-template <class Start, class GetEnd>
+template <class First, class Start, class GetEnd>
 void PixelSampler::Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces,
-  const Start& start, const GetEnd& getEnd) const
+  const First& findFirst, const Start& start, const GetEnd& getEnd) const
 {
   LightPath* paths[MaxRays] = {};
   const auto getPath = [&](int index) -> LightPath&
@@ -207,9 +246,17 @@ void PixelSampler::Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounce
     }
     return *paths[index];
   };
+  bool isFirst = true;
   while (wanted != 0)
   {
-    RayMask seen = this->FindSurfaces(rays, wanted, beam, getPath);
+    RayMask seen = this->DescribeSurfaces(
+      rays,
+      [&](ObjectHit* hits)
+      {
+        return std::exchange(isFirst, false) ? findFirst(hits)
+                                             : this->Surfaces.Find(rays, wanted, beam, hits);
+      },
+      getPath);
     if (!this->Media.IsEmpty())
     {
       ForEachRay(wanted, [&](int index) { getPath(index); });
@@ -411,6 +458,7 @@ void PixelSampler::AddReflections(LightPath* const* paths, int count, const Shad
     });
   this->Follow(
     nullptr, mirrored->Rays, mirrors, bounces - 1,
+    [&](ObjectHit* hits) { return this->Surfaces.Find(mirrored->Rays, mirrors, nullptr, hits); },
     [&](int number) -> LightPath&
     {
       LightPath& behind = mirrored->Paths.Add();

@@ -8,6 +8,7 @@
 #include "DSMRayTracing/frame/MediumLighting.h"
 #include "DSMRayTracing/frame/PixelRays.h"
 #include "DSMRayTracing/frame/PixelSample.h"
+#include "DSMRayTracing/frame/TileHits.h"
 #include "DSMRayTracing/scene/MediaMarcher.h"
 #include "DSMRayTracing/scene/MediumIntegrals.h"
 #include "DSMRayTracing/scene/SceneBeam.h"
@@ -37,10 +38,28 @@ public:
   /// Samples of pixels; empty ones are left out.
   using Samples = FixedList<PixelSample, MaxRays>;
 
+  /// First hits of pixels around a box: those that are known, or else those that are to be kept.
+  struct FirstHits
+  {
+    const TileHits* Known = nullptr;
+    TileHits* Kept = nullptr;
+    glm::ivec2 Corner{ 0 }; ///< lower left pixel
+    int Width = 0;
+
+    std::size_t GetPlace(const glm::ivec2& pixel) const
+    {
+      return static_cast<std::size_t>(pixel.y - this->Corner.y) * this->Width +
+        static_cast<std::size_t>(pixel.x - this->Corner.x);
+    }
+  };
+
   /// Adds samples of that number of the pixels of a box, at most BoxEdge wide and high. `beam`: of pixels
   /// around; null: each by itself, which is slower.
-  void Sample(
-    SceneBeam* beam, int x, int y, int width, int height, int sample, Samples& samples) const;
+  void Sample(SceneBeam* beam, int x, int y, int width, int height, int sample,
+    const FirstHits& hits, Samples& samples) const;
+
+  /// Returns whether beams are of use where the first hits are known.
+  bool LooksBehindHits() const { return !this->World.IsOpaque(); }
 
   static constexpr int BoxEdge = 8;
   /// The rays of a block of pixels follow one another, so that those that mesh packets take have as much in
@@ -54,16 +73,21 @@ private:
   struct Mirrored;
 
   /// Finds what rays meet, and tells it the path that `getPath(index)` gives for each that meets
-  /// something; it is called once for each. Returns those rays.
-  template <class GetPath>
-  RayMask FindSurfaces(Ray* rays, RayMask wanted, SceneBeam* beam, const GetPath& getPath) const;
+  /// something; it is called once for each. `find(hits)`: finds the hits of rays, and returns which have one. Returns
+  /// those rays.
+  template <class Find, class GetPath>
+  RayMask DescribeSurfaces(const Ray* rays, const Find& find, const GetPath& getPath) const;
+
+  /// Finds the first hits of a box of pixels, or takes those that are known.
+  RayMask FindFirst(Ray* rays, RayMask wanted, SceneBeam* beam, const FirstHits& known,
+    const glm::ivec2& corner, ObjectHit* hits) const;
 
   /// Follows those of the rays that are `wanted` front to back until they end: through media, and from surface to
-  /// surface. `start(index)` makes the path of a ray that has something to show; it is called once for each.
-  /// `getEnd(index)`: T where a ray ends.
-  template <class Start, class GetEnd>
-  void Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const Start& start,
-    const GetEnd& getEnd) const;
+  /// surface. `findFirst(hits)`: finds the first hits of the rays. `start(index)` makes the path of a ray that has
+  /// something to show; it is called once for each. `getEnd(index)`: T where a ray ends.
+  template <class First, class Start, class GetEnd>
+  void Follow(SceneBeam* beam, Ray* rays, RayMask wanted, int bounces, const First& findFirst,
+    const Start& start, const GetEnd& getEnd) const;
 
   /// Adds what media contribute in front of the surfaces that rays have met.
   void AddMedia(SceneBeam* beam, const Ray* rays, RayMask wanted, LightPath* const* paths) const;
@@ -85,6 +109,7 @@ private:
   glm::vec3 ShowForDebugging(const glm::dvec3& place) const;
 
   std::vector<const BeamFinder*> Finders;
+  std::vector<const ObjectTracer*> Objects; ///< by their numbers
   SurfaceFinder Surfaces;
   MediaMarcher Media;
   MediumIntegrals Integrals;

@@ -34,7 +34,7 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   ObjectDigest digest;
   // The samples of a picture are added to one another.
   const auto& [width, height, worldToClip, pixelSize, tileSize, firstSample, samples, tolerance,
-    layers, limits, mediumCuts, channels, scheduling] = request;
+    layers, limits, mediumCuts, channels, scheduling, keepsHits] = request;
   digest.AddAll(width, height, worldToClip, pixelSize, tileSize, tolerance, layers, limits,
     mediumCuts, channels);
   Add(digest, scene.Transport);
@@ -54,6 +54,19 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   {
     digest.Add(medium.index());
     std::visit([&](const auto& known) { known.AddTo(digest); }, medium);
+  }
+  return digest.Get();
+}
+
+std::uint64_t GetSurfaceDigest(const Scene& scene, const FrameRequest& request)
+{
+  ObjectDigest digest;
+  digest.AddAll(
+    request.Width, request.Height, request.TileSize, request.WorldToClip, request.Limits);
+  for (const SceneObject& object : scene.Objects)
+  {
+    digest.Add(object.index());
+    std::visit([&](const auto& known) { known.AddShapeTo(digest); }, object);
   }
   return digest.Get();
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace rt
 {
@@ -74,11 +75,12 @@ void AddMoreChannels(const PixelSample& traced, int sample, Tile& tile)
 } // namespace
 
 TileSampler::TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
-  const FrameRequest& request, BeamHistory* beams)
+  const FrameRequest& request, BeamHistory* beams, KeptHits* hits)
   : Finders(tracers.GetBeamFinders())
   , Pixels(tracers, scene, rays, request.Channels)
   , Request(request)
   , Beams(beams)
+  , Hits(hits)
 {
 }
 
@@ -113,13 +115,54 @@ void TileSampler::Trace(Tile& tile) const
     tile.Squares.assign(this->Request.MayStop() ? pixels : 0, 0.0f);
   }
   tile.Samples = this->Request.FirstSample + this->Request.Samples;
-  Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
-    [&](const PixelBox& box) { this->TraceBeam(tile, box); });
+  FirstHits hits = this->FindFirstHits(tile);
+  const PixelBox whole{ 0, 0, tile.Width, tile.Height };
+  if (hits.AreKnown && !this->Pixels.LooksBehindHits())
+  {
+    Split(whole, PixelSampler::BoxEdge,
+      [&](const PixelBox& box) { this->TraceBatch(tile, nullptr, box, hits); });
+    return;
+  }
+  Split(whole, BeamEdge, [&](const PixelBox& box) { this->TraceBeam(tile, box, hits); });
+  if (this->Hits)
+  {
+    this->Hits->Keep(tile.Index, std::move(hits.Kept));
+  }
+}
+
+TileSampler::FirstHits TileSampler::FindFirstHits(const Tile& tile) const
+{
+  FirstHits hits;
+  if (!this->Hits)
+  {
+    return hits;
+  }
+  const std::vector<TileHits>& known = this->Hits->Get(tile.Index);
+  const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
+  const int end = this->Request.FirstSample + this->Request.Samples;
+  for (int sample = this->Request.FirstSample; sample < end; ++sample)
+  {
+    const auto number = static_cast<std::size_t>(sample);
+    if (number < known.size())
+    {
+      hits.Known.push_back(&known[number]);
+    }
+    else if (number == known.size() + hits.Kept.size() && this->Hits->HasRoom(sample))
+    {
+      hits.Kept.emplace_back(pixels);
+    }
+  }
+  hits.AreKnown = static_cast<int>(hits.Known.size()) == this->Request.Samples;
+  return hits;
 }
 
 bool TileSampler::Prefetch(const Tile& tile) const
 {
   bool anyAbsent = false;
+  if (this->Hits && this->FindFirstHits(tile).AreKnown)
+  {
+    return anyAbsent;
+  }
   Split({ 0, 0, tile.Width, tile.Height }, BeamEdge,
     [&](const PixelBox& box) {
       anyAbsent |= this->IsOpen(tile, box) && this->Prefetch(this->FindBeam(tile, box), tile, box);
@@ -194,7 +237,7 @@ void TileSampler::Record(const SceneBeam& beam, const Tile& tile, const PixelBox
   }
 }
 
-void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
+void TileSampler::TraceBeam(Tile& tile, const PixelBox& box, FirstHits& hits) const
 {
   if (!this->IsOpen(tile, box))
   {
@@ -212,11 +255,11 @@ void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
       {
         if (splits)
         {
-          this->TraceBeam(tile, part);
+          this->TraceBeam(tile, part, hits);
         }
         else
         {
-          this->TraceBatch(tile, beam, part);
+          this->TraceBatch(tile, &beam, part, hits);
         }
       });
   }
@@ -227,7 +270,8 @@ void TileSampler::TraceBeam(Tile& tile, const PixelBox& box) const
   this->Record(beam, tile, box);
 }
 
-void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const
+void TileSampler::TraceBatch(
+  Tile& tile, SceneBeam* beam, const PixelBox& box, FirstHits& hits) const
 {
   if (!this->IsOpen(tile, box))
   {
@@ -238,8 +282,18 @@ void TileSampler::TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) c
   for (; sample < end && !this->AreEnough(sample, tile, box); ++sample)
   {
     PixelSampler::Samples samples;
+    PixelSampler::FirstHits first{ nullptr, nullptr, { tile.X, tile.Y }, tile.Width };
+    const auto number = static_cast<std::size_t>(sample - this->Request.FirstSample);
+    if (number < hits.Known.size())
+    {
+      first.Known = hits.Known[number];
+    }
+    else if (number - hits.Known.size() < hits.Kept.size())
+    {
+      first.Kept = &hits.Kept[number - hits.Known.size()];
+    }
     this->Pixels.Sample(
-      &beam, tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height, sample, samples);
+      beam, tile.X + box.Left, tile.Y + box.Top, box.Width, box.Height, sample, first, samples);
     for (int number = 0; number < samples.GetCount(); ++number)
     {
       AddSample(samples[number], tile);

@@ -4,11 +4,13 @@
 
 #include "DSMRayTracing/frame/BeamHistory.h"
 #include "DSMRayTracing/frame/Frame.h"
+#include "DSMRayTracing/frame/KeptHits.h"
 #include "DSMRayTracing/frame/PixelSampler.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace rt
 {
@@ -19,8 +21,9 @@ class TileSampler
 {
 public:
   /// Keeps references.
+  /// `hits`: of this frame; null: none are known or kept.
   TileSampler(const SceneTracers& tracers, const Scene& scene, const PixelRays& rays,
-    const FrameRequest& request, BeamHistory* beams = nullptr);
+    const FrameRequest& request, BeamHistory* beams = nullptr, KeptHits* hits = nullptr);
 
   /// Adds the request's samples to the tile's sums, which hold the samples before them. May wait for
   /// bricks.
@@ -51,9 +54,18 @@ private:
   bool Prefetch(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const;
   void Record(const SceneBeam& beam, const Tile& tile, const PixelBox& box) const;
 
+  /// The first hits of a tile that are known, and that are found, by sample of the request.
+  struct FirstHits
+  {
+    std::vector<const TileHits*> Known;
+    std::vector<TileHits> Kept;
+    bool AreKnown = false; ///< of all samples
+  };
+  FirstHits FindFirstHits(const Tile& tile) const;
+
   /// Adds the samples of pixels that share a beam; of one that fits into a batch.
-  void TraceBeam(Tile& tile, const PixelBox& box) const;
-  void TraceBatch(Tile& tile, SceneBeam& beam, const PixelBox& box) const;
+  void TraceBeam(Tile& tile, const PixelBox& box, FirstHits& hits) const;
+  void TraceBatch(Tile& tile, SceneBeam* beam, const PixelBox& box, FirstHits& hits) const;
   static void AddSample(const PixelSample& traced, Tile& tile);
 
   static void SetCounts(int samples, const PixelBox& box, Tile& tile);
@@ -67,6 +79,7 @@ private:
   PixelSampler Pixels;
   const FrameRequest& Request;
   BeamHistory* Beams; ///< null: nothing is prefetched
+  KeptHits* Hits;     ///< may be null
 };
 
 } // namespace rt

@@ -15,13 +15,17 @@ bool MeshObject::IsOpaque() const
       (look.ColoredBy != MeshLook::Coloring::Colors && look.Colors->IsOpaque()));
 }
 
-void MeshObject::AddTo(ObjectDigest& digest) const
+void MeshObject::AddShapeTo(ObjectDigest& digest) const
 {
   digest.AddAll(this->Instance->GetMesh().Segment->GetNumber(), this->Instance->GetMeshToWorld(),
-    this->Instance->Culling.Front, this->Instance->Culling.Back);
+    this->Instance->Culling.Front, this->Instance->Culling.Back, this->Clipping);
+}
+
+void MeshObject::AddTo(ObjectDigest& digest) const
+{
+  this->AddShapeTo(digest);
   const auto& [coloredBy, colors, picture, flat, surface, backSurface, edges] = this->Look;
   digest.AddAll(coloredBy, colors, picture, flat, surface, backSurface, edges);
-  digest.Add(this->Clipping);
 }
 
 } // namespace rt

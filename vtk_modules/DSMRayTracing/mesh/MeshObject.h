@@ -57,6 +57,8 @@ struct MeshObject
   /// Returns whether the mesh lets no light through anywhere. Colors of its own and a texture are
   /// not examined: a mesh with these counts as translucent.
   bool IsOpaque() const;
+  /// All that the first hits of rays depend on.
+  void AddShapeTo(ObjectDigest& digest) const;
   /// All that a picture of it depends on.
   void AddTo(ObjectDigest& digest) const;
 };

@@ -5,6 +5,8 @@
 #include "DSMRayTracing/ray/Ray.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <new>
 #include <type_traits>
 
@@ -29,12 +31,13 @@ public:
   template <class Hit>
   Hit* Open(const ObjectTracer& object, double t, Ray& ray)
   {
-    static_assert(sizeof(Hit) <= Size && std::is_trivially_destructible_v<Hit>, "fits the slot");
+    static_assert(sizeof(Hit) <= Most && std::is_trivially_copyable_v<Hit>, "fits the slot");
     if (this->Tracer && !(t < ray.Max))
     {
       return nullptr;
     }
     this->Tracer = &object;
+    this->Size = sizeof(Hit);
     ray.Max = t;
     return new (this->Slot) Hit;
   }
@@ -56,11 +59,25 @@ public:
     return *std::launder(reinterpret_cast<const Hit*>(this->Slot));
   }
 
+  ///@{
+  /// The bytes of the hit that the object has stored: a copy of them is the same hit of that object, whichever worker
+  /// traces it. Places in bricks are numbers.
+  const std::byte* GetBytes() const { return this->Slot; }
+  std::uint32_t GetSize() const { return this->Size; }
+  void Set(const ObjectTracer& object, const std::byte* bytes, std::uint32_t size)
+  {
+    this->Tracer = &object;
+    this->Size = size;
+    std::memcpy(this->Slot, bytes, size);
+  }
+  ///@}
+
 private:
-  static constexpr std::size_t Size = 256;
+  static constexpr std::size_t Most = 256;
 
   const ObjectTracer* Tracer;
-  alignas(16) std::byte Slot[Size];
+  std::uint32_t Size;
+  alignas(16) std::byte Slot[Most];
 };
 
 } // namespace rt

@@ -17,6 +17,12 @@ bool OtherKind<TracerType>::IsLayered() const
 }
 
 template <class TracerType>
+void OtherKind<TracerType>::AddShapeTo(ObjectDigest& digest) const
+{
+  this->Described->AddShapeTo(digest);
+}
+
+template <class TracerType>
 void OtherKind<TracerType>::AddTo(ObjectDigest& digest) const
 {
   this->Described->AddTo(digest);

@@ -33,6 +33,7 @@ public:
   /// See SceneObject and SceneMedium.
   bool IsOpaque() const;
   bool IsLayered() const;
+  void AddShapeTo(ObjectDigest& digest) const;
   void AddTo(ObjectDigest& digest) const;
   ///@}
 

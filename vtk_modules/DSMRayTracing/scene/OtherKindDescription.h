@@ -24,6 +24,7 @@ public:
   virtual ~Description() = default;
   virtual bool IsOpaque() const = 0;
   virtual bool IsLayered() const = 0;
+  virtual void AddShapeTo(ObjectDigest& digest) const = 0;
   virtual void AddTo(ObjectDigest& digest) const = 0;
   ///@{
   /// The tracer keeps references to all.
@@ -61,6 +62,13 @@ public:
       return this->Described.IsLayered();
     }
     return false;
+  }
+  void AddShapeTo(ObjectDigest& digest) const override
+  {
+    if constexpr (IsObject)
+    {
+      this->Described.AddShapeTo(digest);
+    }
   }
   void AddTo(ObjectDigest& digest) const override { this->Described.AddTo(digest); }
 

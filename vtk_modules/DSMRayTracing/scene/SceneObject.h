@@ -28,7 +28,7 @@ struct ObjectKinds<std::variant<FieldTypes...>>
 };
 
 /// An object of any kind: surfaces and slices of each kind of field, and meshes. A kind has
-/// - a description with IsOpaque, AddTo and the name of
+/// - a description with IsOpaque, AddTo, AddShapeTo and the name of
 /// - its Tracer, an ObjectTracer for a store, whose header SceneTracers-inl.h includes.
 /// Among surfaces that are equally near, that of the kind that comes first here is visible.
 using SceneObject = ObjectKinds<AnyField>::Any;

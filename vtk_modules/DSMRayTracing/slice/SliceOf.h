@@ -54,8 +54,8 @@ struct SliceOf
       (!this->ColorValues || this->Look.HasOpaqueColors(FieldType::HasHoles(*this->ColorValues)));
   }
 
-  /// All that a picture of them depends on.
-  void AddTo(ObjectDigest& digest) const
+  /// All that the first hits of rays depend on.
+  void AddShapeTo(ObjectDigest& digest) const
   {
     this->Field.AddTo(digest);
     digest.Add(this->Planes.size());
@@ -64,6 +64,13 @@ struct SliceOf
       digest.Add(plane.Normal);
       digest.Add(plane.Point);
     }
+    digest.AddAll(this->Least, this->Most, this->Clipping);
+  }
+
+  /// All that a picture of them depends on.
+  void AddTo(ObjectDigest& digest) const
+  {
+    this->AddShapeTo(digest);
     digest.Add(this->ColorValues != nullptr);
     if (this->ColorValues)
     {
@@ -71,9 +78,6 @@ struct SliceOf
     }
     this->Look.AddTo(digest);
     digest.Add(this->NearestValues);
-    digest.Add(this->Least);
-    digest.Add(this->Most);
-    digest.Add(this->Clipping);
   }
 };
 

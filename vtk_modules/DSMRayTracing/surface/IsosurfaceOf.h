@@ -64,18 +64,23 @@ struct IsosurfaceOf : LevelSets<FieldType>
     return sheets;
   }
 
+  /// All that the first hits of rays depend on.
+  void AddShapeTo(ObjectDigest& digest) const
+  {
+    this->Field.AddTo(digest);
+    digest.AddAll(this->Isovalues, this->Look.IsSeen(), this->Clipping);
+  }
+
   /// All that a picture of them depends on.
   void AddTo(ObjectDigest& digest) const
   {
-    this->Field.AddTo(digest);
-    digest.Add(this->Isovalues);
+    this->AddShapeTo(digest);
     digest.Add(this->ColorValues != nullptr);
     if (this->ColorValues)
     {
       FieldType::AddTo(digest, *this->ColorValues);
     }
     this->Look.AddTo(digest);
-    digest.Add(this->Clipping);
   }
 };
 

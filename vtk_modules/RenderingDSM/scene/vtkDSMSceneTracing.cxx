@@ -196,6 +196,7 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
         (mayWaitTooLong && this->Detail.IsTooLong(this->Group->GetStore()));
     };
     messenger.Insist([&] { this->Group->GetFrameRenderer().SetWatch(watch); });
+    task.Request.KeepsHits = !isDraft && !this->IsInteractive();
     result = this->Eye->Accumulation.Trace({ messenger, this->Group->GetFrameRenderer(), store },
       offers, task.Scene, task.Request, wanted, pace, report);
     if (result == Result::Traced)

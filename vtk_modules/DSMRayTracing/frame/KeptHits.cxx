@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DSMRayTracing/frame/KeptHits.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rt
+{
+
+bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool keeps)
+{
+  this->Most = most;
+  this->Keeps = keeps;
+  const auto known = std::find_if(this->Pictures.begin(), this->Pictures.end(),
+    [&](const Picture& picture) { return picture.Digest == digest; });
+  if (known != this->Pictures.end())
+  {
+    this->Pictures.splice(this->Pictures.begin(), this->Pictures, known);
+  }
+  else if (keeps)
+  {
+    std::vector<std::vector<TileHits>> empty(static_cast<std::size_t>(tiles));
+    this->Pictures.emplace_front();
+    this->Pictures.front().Digest = digest;
+    this->Pictures.front().Tiles = std::move(empty);
+  }
+  else
+  {
+    return false;
+  }
+  this->Shown = &this->Pictures.front();
+  this->MakeRoom(0);
+  return true;
+}
+
+void KeptHits::Keep(int tile, std::vector<TileHits> hits)
+{
+  for (TileHits& sample : hits)
+  {
+    sample.GiveBackMemory();
+    const std::size_t bytes = sample.CountBytes();
+    if (!this->MakeRoom(bytes))
+    {
+      return;
+    }
+    this->Shown->Bytes += bytes;
+    this->Shown->Tiles[static_cast<std::size_t>(tile)].push_back(std::move(sample));
+  }
+}
+
+/// Takes so many bytes, from other pictures if need be. Returns whether there are as many.
+bool KeptHits::MakeRoom(std::size_t bytes)
+{
+  this->Bytes += bytes;
+  if (this->Bytes <= this->Most)
+  {
+    return true;
+  }
+  const std::scoped_lock lock(this->Access);
+  while (this->Bytes > this->Most && this->Pictures.size() > 1)
+  {
+    this->Bytes -= this->Pictures.back().Bytes;
+    this->Pictures.pop_back();
+  }
+  if (this->Bytes <= this->Most)
+  {
+    return true;
+  }
+  this->Bytes -= bytes;
+  return false;
+}
+
+} // namespace rt

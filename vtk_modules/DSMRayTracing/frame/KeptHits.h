@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef rt_KeptHits_h
+#define rt_KeptHits_h
+
+#include "DSMRayTracing/frame/TileHits.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <mutex>
+#include <vector>
+
+namespace rt
+{
+
+/// The first hits of tiles that this rank traced: a picture of the same surfaces from the same place has them, too, in
+/// whatever colors and light. Those of the pictures that were shown last, as far as they fit.
+class KeptHits
+{
+public:
+  /// Samples of a pixel whose hits are kept. No square of pixels has fewer (FrameRequest::SureSamples), unless fewer are
+  /// asked for.
+  static constexpr int MostSamples = 4;
+
+  /// Between frames. `digest`: of the surfaces and the camera (GetSurfaceDigest) of the frame that begins. `most`:
+  /// bytes that are kept. Returns whether hits of that frame are known, or `keeps` them.
+  bool Begin(std::uint64_t digest, int tiles, std::size_t most, bool keeps);
+
+  ///@{
+  /// During such a frame; one thread for each tile.
+
+  /// The hits of the samples of a tile that are known, the first ones. They stay until the frame ends, or more are kept.
+  const std::vector<TileHits>& Get(int tile) const
+  {
+    return this->Shown->Tiles[static_cast<std::size_t>(tile)];
+  }
+  /// Returns whether hits of that sample would be kept.
+  bool HasRoom(int sample) const
+  {
+    return this->Keeps && sample < MostSamples && this->Shown->Bytes < this->Most;
+  }
+  /// Keeps those of the samples after the known ones, as far as there is room.
+  void Keep(int tile, std::vector<TileHits> hits);
+  ///@}
+
+private:
+  struct Picture
+  {
+    std::uint64_t Digest;
+    std::vector<std::vector<TileHits>> Tiles; ///< by number, then sample
+    std::atomic<std::size_t> Bytes{ 0 };
+  };
+
+  bool MakeRoom(std::size_t bytes);
+
+  std::list<Picture> Pictures; ///< the last one first
+  Picture* Shown = nullptr;    ///< in the frame
+  std::mutex Access;           ///< to pictures that are not
+  std::atomic<std::size_t> Bytes{ 0 };
+  std::size_t Most = 0;
+  bool Keeps = false;
+};
+
+} // namespace rt
+
+#endif
