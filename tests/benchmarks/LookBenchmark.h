@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-/// Collective. Times a picture whose first hits are kept, and then those of other colors, opacity and lamps from the same
-/// place, over a picture that keeps nothing: medians of `rounds` in turn. The result is on rank 0.
+/// Collective. Times a picture whose first hits are kept, and then those of other colors, opacity and lamps from the
+/// same place, over a picture that keeps nothing: medians of `rounds` in turn. The result is on rank 0.
 nlohmann::ordered_json BenchmarkLooks(dsm::Messenger& messenger, dsm::BlockStore& store,
   rt::FrameRenderer& renderer, const rt::Scene& scene, const rt::FrameRequest& request, int rounds);
 

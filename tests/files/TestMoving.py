@@ -146,6 +146,46 @@ for number, place in enumerate(((0.0, 0.0, 1.0), (0.3, 0.5, 1.0))):
     check(0.5 * crossed < fetched <= 2 * crossed, f"{fetched} bricks are fetched of a slice through {crossed}")
 view.CameraParallelProjection = 0
 
+# Where the samples are closer than pixels, so that the finest level shows nothing more, a coarser one is shown. It is
+# the picture of that level by itself.
+simple.Delete(source)
+source = simple.DSMVolumeReader(FileName=path + ".vtkhdf")
+display = show(source, view, [0.8], ARRAY, DSMMemory=64, DSMThreads=1)
+place_camera(view, PLACES[0])
+near = numpy.array(view.CameraPosition)
+middle = numpy.array(view.CameraFocalPoint)
+seen_levels = set()
+CASES = (("DSM Ray Traced", 4, 1), ("DSM Ray Traced", 1, 4), ("DSM Ray Traced", 16, 0.125), ("DSM Volume", 8, 1))
+for kind, away, pixels in CASES:
+    display.Representation = kind
+    view.CameraPosition = list(middle + away * (near - middle))
+    toward = (middle - view.CameraPosition) / numpy.linalg.norm(middle - view.CameraPosition)
+    corners = numpy.array([[c & 1, c >> 1 & 1, c >> 2] for c in range(8)])
+    depth = ((corners - view.CameraPosition) @ toward).min()
+    scale = view.ViewSize[1] / (2 * numpy.tan(numpy.radians(view.CameraViewAngle / 2)) * depth)
+    display.DSMLevelOfDetail, display.DSMPixelsPerSample = "Automatic", pixels
+    automatic = render(view)
+    level = get_coarser()
+    width = 2**level * scale / EDGE  # of the shown level's samples, in pixels
+    check((width <= pixels or level == 0) and 2 * width > 0.5 * pixels,
+          f"{kind}, {away} times as far: at level {level}, samples are {width:.2f} of {pixels} pixels wide")
+    seen_levels.add(level)
+    display.DSMLevelOfDetail = "Finest"
+    finest = render(view)
+    check(get_coarser() == 0, "the finest on request")
+    check((automatic == finest).all() == (level == 0), "the levels differ")
+    difference = abs(automatic - finest).mean()
+    check(difference < 2 * pixels, f"but by {difference:.2f} of 255 on the mean")
+    if kind == "DSM Ray Traced" and level > 0:
+        other = simple.DSMVolumeReader(FileName=path + ".vtkhdf", LevelofDetail=level)
+        display.Visibility = 0
+        own = show(other, view, [0.8], ARRAY)
+        view.CameraPosition = list(middle + away * (near - middle))
+        check_equal(render(view), automatic, f"level {level} by hand is the same picture")
+        simple.Delete(other)
+        display.Visibility = 1
+check(len(seen_levels) > 2, f"levels: {seen_levels}")
+
 # A coarser level that was opened has its own below it; where there is none, the option does nothing.
 simple.Delete(source)
 source = simple.DSMVolumeReader(FileName=path + ".vtkhdf", LevelofDetail=4)

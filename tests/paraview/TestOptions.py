@@ -138,7 +138,7 @@ settings.UpdateVTKObjects()
 MEMORY = {
     "DSMMemoryOrganization": "Object based", "DSMHostSharing": 0, "DSMMemory": 123, "DSMCacheSize": 33,
     "DSMThreads": 2, "DSMScheduler": "Central queue", "DSMSilenceLimit": 90, "DSMScratchDirectory": "/nowhere",
-    "DSMCoarserDataWhileMoving": 1,
+    "DSMCoarserDataWhileMoving": 1, "DSMLevelOfDetail": "Finest", "DSMPixelsPerSample": 2.0,
 }
 simple.ResetSession()
 load_plugin()

@@ -15,12 +15,12 @@ namespace rt
 {
 
 /// The first hits of tiles that this rank traced: a picture of the same surfaces from the same place has them, too, in
-/// whatever colors and light. Those of the pictures that were shown last, as far as they fit.
+/// whatever colors and light. The pictures that were shown last have them, as far as they fit.
 class KeptHits
 {
 public:
-  /// Samples of a pixel whose hits are kept. No square of pixels has fewer (FrameRequest::SureSamples), unless fewer are
-  /// asked for.
+  /// Samples of a pixel whose hits are kept. No square of pixels has fewer (FrameRequest::SureSamples), unless fewer
+  /// are asked for.
   static constexpr int MostSamples = 4;
 
   /// Between frames. `digest`: of the surfaces and the camera (GetSurfaceDigest) of the frame that begins. `most`:
@@ -30,7 +30,8 @@ public:
   ///@{
   /// During such a frame; one thread for each tile.
 
-  /// The hits of the samples of a tile that are known, the first ones. They stay until the frame ends, or more are kept.
+  /// The hits of the first samples of a tile, as far as they are known. They stay until the frame ends, or more are
+  /// kept.
   const std::vector<TileHits>& Get(int tile) const
   {
     return this->Shown->Tiles[static_cast<std::size_t>(tile)];

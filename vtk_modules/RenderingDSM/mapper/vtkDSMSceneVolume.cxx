@@ -7,6 +7,7 @@
 
 #include "DSMBricks/layout/FirstIsovalue.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
+#include "DSMRayTracing/frame/SampleWidth.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
@@ -379,7 +380,7 @@ void vtkDSMSceneVolume::TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, boo
       {
         published->Coarser = std::make_shared<vtkDSMVolumeData::Coarser>();
         published->CoarserFailure =
-          std::string("Coarser data are not available while the camera moves: ") + error.what();
+          std::string("Coarser levels of detail are not available: ") + error.what();
       }
     }
     if (!published->CoarserFailure.empty())
@@ -397,6 +398,32 @@ int vtkDSMSceneVolume::CountCoarser() const
     levels = published->HasAny() ? std::min(levels, published->CountCoarser()) : levels;
   }
   return levels;
+}
+
+int vtkDSMSceneVolume::FindLevel(const rt::FrameRequest& request, double pixels)
+{
+  int level = this->CountCoarser();
+  if (level == 0)
+  {
+    return level;
+  }
+  this->Prop->ComputeMatrix();
+  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const auto isFine = [&](const std::shared_ptr<vtkDSMPartValues>& values)
+  {
+    return !values ||
+      rt::GetSampleWidth(request, dataToWorld * values->GetIndexToData(),
+        glm::dvec3(values->CountSlices() - bricks::Index3(1))) <= pixels;
+  };
+  for (; level > 0; --level)
+  {
+    const vtkDSMVolumeData::Values& parts = this->GetIso()->GetParts(level);
+    if (std::all_of(parts.begin(), parts.end(), isFine))
+    {
+      break;
+    }
+  }
+  return level;
 }
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)

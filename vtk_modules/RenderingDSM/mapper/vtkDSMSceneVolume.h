@@ -36,6 +36,7 @@ public:
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
   int CountCoarser() const override;
+  int FindLevel(const rt::FrameRequest& request, double pixels) override;
   /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;
   void ExtractIsosurfaces(

@@ -86,11 +86,21 @@ dsm_setting(ScratchDirectory OWNER ranks TYPE directory
   TEXT "Directory on a local disk of each rank's node, such as /scratch. Bricks that exceed the memory limit go to a
     file there and are loaded on demand. The file disappears with the process. Empty: such data are refused with an
     error. The picture is the same.")
+dsm_setting(LevelOfDetail OWNER ranks TYPE enum DEFAULT 0
+  ENTRIES AutomaticLevel "Automatic" FinestLevel "Finest"
+  LABEL "Level of Detail"
+  TEXT "Level of a volume file with several levels (dsm_convert --levels, Save Data, OME-Zarr). Automatic: the coarsest
+    whose samples are not farther apart than Pixels per Sample, where they are nearest to the camera. The picture needs
+    fewer bricks. Finest: all that the file has.")
+dsm_setting(PixelsPerSample OWNER ranks TYPE double DEFAULT 1 RANGE 0.125 64
+  LABEL "Pixels per Sample"
+  TEXT "Largest distance of samples in the picture, in pixels, at which Level of Detail chooses a coarser level. 1 shows
+    all that pixels can show. Larger values need fewer bricks.")
 dsm_setting(CoarserDataWhileMoving OWNER ranks TYPE bool DEFAULT 0
   LABEL "Coarser Data While Moving"
   TEXT "Show a coarser level of a volume file while the camera moves and bricks are being fetched. Requires a file
     with several levels (dsm_convert --levels, Save Data, OME-Zarr). Still pictures, screenshots and scripts always
-    show the finest level.")
+    show the level that Level of Detail chooses.")
 dsm_setting(CacheSize OWNER ranks TYPE int DEFAULT 256 RANGE 1
   LABEL "Cache Limit (MiB per Rank)"
   TEXT "Limit of each rank's cache in MiB, for bricks owned by other ranks.")

@@ -127,6 +127,7 @@ struct vtkDSMScene::Internals::View
   glm::dmat4 WorldToClip;
   rt::Environment Background;
   std::int32_t IsApart; ///< something of its own may be between surfaces
+  std::uint64_t Levels; ///< of detail, of all that is shown: see vtkDSMSceneMembers::ChooseLevels
   std::int32_t Coarser; ///< levels that may stand in
   std::int32_t HasObjects;
   std::int32_t LimitsRays; ///< draws something itself that ends rays through media
@@ -141,7 +142,7 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeHoldings(bool& needsUpdate)
   this->Members.ForwardOptions(this->Light, options);
   this->Group->Configure();
   const dsm::BlockStore::Settings& settings = this->Group->GetStore().GetSettings();
-  const bool wantsCoarser = options->GetCoarserDataWhileMoving();
+  const bool wantsCoarser = this->WantsCoarser();
   needsUpdate = this->SettledVersion != this->Group->GetSettingsVersion();
   const auto& members = this->Members.GetShown();
   std::vector<std::byte> bytes(sizeof(Holdings) + members.size());
@@ -178,9 +179,10 @@ void vtkDSMScene::Internals::CheckHoldings(const Records& records)
     }
     if (other.Settings != first.Settings)
     {
-      throw dsm::Error("The ranks have different memory settings; frame skipped. Use the same "
-                       "DSMMemoryOrganization, DSMHostSharing, DSMMemory, DSMCacheSize, "
-                       "DSMScratchDirectory and DSMCoarserDataWhileMoving on all ranks.");
+      throw dsm::Error(
+        "The ranks have different memory settings; frame skipped. Use the same "
+        "DSMMemoryOrganization, DSMHostSharing, DSMMemory, DSMCacheSize, "
+        "DSMScratchDirectory, DSMLevelOfDetail and DSMCoarserDataWhileMoving on all ranks.");
     }
   }
 }
@@ -231,7 +233,7 @@ void vtkDSMScene::Internals::TakeIn()
 void vtkDSMScene::Internals::Update(vtkDSMSceneMember& member, bool newData)
 {
   member.Update(this->Group, newData);
-  member.TakeCoarser(this->Group, this->Group->GetOptions()->GetCoarserDataWhileMoving());
+  member.TakeCoarser(this->Group, this->WantsCoarser());
 }
 
 /// Puts what this rank shows into the tracer's words, without what rank 0 decides (see AgreeOnView). `request`: of
@@ -240,6 +242,11 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   rt::Scene& scene, rt::FrameRequest& request, vtkMatrix4x4* projection)
 {
   scene = {};
+  request = this->Image ? vtkDSMTranslation::ToRequest(
+                            this->Renderer, this->Image->Width, this->Image->Height, projection)
+                        : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
+  View view{};
+  view.Levels = this->ChooseLevels(request);
   this->Members.AddTo(scene, 0);
   this->KeepProp(scene);
   double bounds[6];
@@ -249,9 +256,6 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
   scene.Transport.Surroundings.Lower = scene.Transport.Surroundings.Upper =
     glm::vec3(static_cast<float>(this->Light->GetEnvironmentLight()));
   scene.View = vtkDSMTranslation::ToDebugView(this->Light);
-  request = this->Image ? vtkDSMTranslation::ToRequest(
-                            this->Renderer, this->Image->Width, this->Image->Height, projection)
-                        : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
   request.Scheduling =
     this->Group->GetOptions()->GetScheduler() == vtkDSMMemoryOptions::CentralQueue
     ? rt::TileScheduling::CentralQueue
@@ -275,7 +279,6 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
     scene.Transport.MediumErrors = rt::Resolution::MediumErrors;
   }
 
-  View view{};
   view.WorldToClip = std::exchange(request.WorldToClip, glm::dmat4(1.0));
   const int edge = this->GetMovingEdge(request);
   view.Offer = this->Eye->Accumulation.CreateOffer(this->Group->GetStore(), scene,
@@ -489,6 +492,21 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
       this->TakeLights(records.front(), place + sizeof(View), scene);
       coarser = this->AgreeOnView(views, scene, request);
     });
+  const bool isLike = std::all_of(views.begin(), views.end(),
+    [&](const View& view) { return view.Levels == views.front().Levels; });
+  if (!isLike)
+  {
+    // The cameras differ in their last bits.
+    offers = messenger.GatherValueTogether(what,
+      [&]
+      {
+        this->ChooseLevels(request);
+        this->Members.AddTo(scene, 0);
+        return this->Eye->Accumulation.CreateOffer(this->Group->GetStore(), scene,
+          rt::Resolution::Reduce(request, this->GetMovingEdge(request)),
+          this->Light->GetSamplesPerPixel(), this->GetPace());
+      });
+  }
   const auto limit = [&](rt::FrameRequest& reduced)
   {
     if (isAny(&View::LimitsRays))

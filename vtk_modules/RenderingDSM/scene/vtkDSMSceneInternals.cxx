@@ -179,6 +179,22 @@ std::string vtkDSMScene::Internals::Conclude(const dsm::Status& outcome)
   return Describe(outcome);
 }
 
+/// Returns whether data are to be there at coarser levels, too.
+bool vtkDSMScene::Internals::WantsCoarser() const
+{
+  const vtkDSMMemoryOptions* const options = this->Group->GetOptions();
+  return options->GetCoarserDataWhileMoving() ||
+    options->GetLevelOfDetail() == vtkDSMMemoryOptions::AutomaticLevel;
+}
+
+/// Local: see vtkDSMSceneMembers.
+std::uint64_t vtkDSMScene::Internals::ChooseLevels(const rt::FrameRequest& request)
+{
+  vtkDSMMemoryOptions* const options = this->Group->GetOptions();
+  const bool isAutomatic = options->GetLevelOfDetail() == vtkDSMMemoryOptions::AutomaticLevel;
+  return this->Members.ChooseLevels(request, isAutomatic ? options->GetPixelsPerSample() : 0.0);
+}
+
 /// Levels below the finest that may stand in, as far as this rank knows.
 int vtkDSMScene::Internals::CountCoarser() const
 {

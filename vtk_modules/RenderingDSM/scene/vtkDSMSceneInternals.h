@@ -158,6 +158,8 @@ private:
   int GetMovingEdge(const rt::FrameRequest& request) const;
   bool DrawsDrafts() const;
   int CountCoarser() const;
+  bool WantsCoarser() const;
+  std::uint64_t ChooseLevels(const rt::FrameRequest& request);
   /// A picture to try: `Coarser` levels of detail below the finest.
   struct Try
   {
@@ -182,6 +184,7 @@ private:
   std::vector<Try> GetTries(const Task& task) const;
   rt::FrameAccumulation::Result TraceScene(Task task, Offers offers);
   bool IsDraft(const Try& picture) const;
+  int GetLevel(const Try& picture) const;
   bool IsLimited(const Task& task) const;
   bool IsUnderWay(const Task& task) const;
   rt::FrameAccumulation::Result TracePicture(Task& task, Offers& offers);

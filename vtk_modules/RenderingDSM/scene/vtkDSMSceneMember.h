@@ -2,6 +2,7 @@
 #ifndef vtkDSMSceneMember_h
 #define vtkDSMSceneMember_h
 
+#include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMRankGroup.h"
 
@@ -78,6 +79,9 @@ public:
   virtual void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>&, bool /*wanted*/) {}
   /// Local, the same on every rank: how many of them there are.
   virtual int CountCoarser() const { return 0; }
+  /// Local, the same on every rank: the coarsest level of detail whose samples a picture shows so many pixels apart, or
+  /// less, where they are nearest to the camera; else the finest (0). `request`: of edge 1.
+  virtual int FindLevel(const rt::FrameRequest& /*request*/, double /*pixels*/) { return 0; }
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
   void SetCoarser(int level) { this->Coarser = level; }
 

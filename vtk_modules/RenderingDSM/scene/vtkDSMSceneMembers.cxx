@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDSMSceneMembers.h"
 
+#include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/memory/FreedMemory.h"
 #include "vtkDSMLightOptions.h"
 #include "vtkDSMMemoryOptions.h"
@@ -152,13 +153,46 @@ int vtkDSMSceneMembers::CountCoarser() const
   return levels;
 }
 
+std::uint64_t vtkDSMSceneMembers::ChooseLevels(const rt::FrameRequest& request, double pixels)
+{
+  bricks::ByteHash hash;
+  for (Member& member : this->Shown)
+  {
+    const Placing placing(member);
+    member.Level = pixels > 0.0 ? member.State->FindLevel(request, pixels) : 0;
+    hash.Add(&member.Level, sizeof(member.Level));
+  }
+  return hash.Get();
+}
+
+int vtkDSMSceneMembers::GetCoarsestChosen() const
+{
+  int level = 0;
+  for (const Member& member : this->Shown)
+  {
+    level = std::max(level, member.Level);
+  }
+  return level;
+}
+
+int vtkDSMSceneMembers::GetFinestChosen() const
+{
+  int level = this->GetCoarsestChosen();
+  for (const Member& member : this->Shown)
+  {
+    level = member.State->CountCoarser() > 0 ? std::min(level, member.Level) : level;
+  }
+  return level;
+}
+
 void vtkDSMSceneMembers::AddTo(rt::Scene& scene, int coarser) const
 {
   scene.Objects.clear();
+  scene.Media.clear();
   for (const Member& member : this->Shown)
   {
     const Placing placing(member);
-    member.State->SetCoarser(coarser);
+    member.State->SetCoarser(std::max(member.Level, coarser));
     member.State->AddTo(scene);
   }
 }

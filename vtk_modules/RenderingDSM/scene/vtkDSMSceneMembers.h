@@ -2,11 +2,13 @@
 #ifndef vtkDSMSceneMembers_h
 #define vtkDSMSceneMembers_h
 
+#include "DSMRayTracing/frame/FrameRequest.h"
 #include "DSMRayTracing/scene/Scene.h"
 #include "vtkDSMSceneMember.h"
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -26,6 +28,7 @@ public:
     vtkDSMSceneMember* State;
     /// For a part of an assembly: its matrix in world space; null: the prop's own matrix.
     vtkSmartPointer<vtkMatrix4x4> Place;
+    int Level = 0; ///< of detail; see ChooseLevels
   };
 
   /// Traverses the renderer's props and their assemblies. Releases members of removed props; keeps members of
@@ -41,8 +44,15 @@ public:
   /// Returns the hidden member with bricks that was shown the longest ago; null if there is none.
   vtkDSMSceneMember* FindOldestHidden() const;
 
-  /// Adds the shown members' objects to the scene, at the finest level of detail (0), or so many
-  /// levels below it.
+  /// Local: chooses the level of detail of each shown member for a picture (vtkDSMSceneMember::FindLevel); 0 pixels:
+  /// the finest. Returns a number that ranks share that choose the same.
+  std::uint64_t ChooseLevels(const rt::FrameRequest& request, double pixels);
+  /// The coarsest level of detail that was chosen for anything, below the finest; and the finest one of what has
+  /// several.
+  int GetCoarsestChosen() const;
+  int GetFinestChosen() const;
+  /// Adds the shown members' objects to the scene, at the level of detail that was chosen (0), or, of those that have
+  /// finer ones, so many levels below the finest.
   void AddTo(rt::Scene& scene, int coarser) const;
   /// The most levels below the finest that anything has.
   int CountCoarser() const;

@@ -83,7 +83,10 @@ std::vector<vtkDSMScene::Internals::Try> vtkDSMScene::Internals::GetTries(const 
   {
     for (const int level : this->Detail.GetTries(task.Coarser))
     {
-      tries.push_back({ level, { this->GetMovingEdge(task.Whole), Unlimited } });
+      if (tries.empty() || level > this->Members.GetFinestChosen())
+      {
+        tries.push_back({ level, { this->GetMovingEdge(task.Whole), Unlimited } });
+      }
     }
   }
   if (this->IsLimited(task) && !this->GoesOn)
@@ -222,6 +225,12 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
   return result;
 }
 
+/// The coarsest level of detail that a picture shows, below the finest.
+int vtkDSMScene::Internals::GetLevel(const Try& picture) const
+{
+  return std::max(picture.Coarser, this->Members.GetCoarsestChosen());
+}
+
 /// All tiles of a picture were traced.
 void vtkDSMScene::Internals::NoteTraced(const Task& task, const Try& done)
 {
@@ -230,7 +239,7 @@ void vtkDSMScene::Internals::NoteTraced(const Task& task, const Try& done)
     {
       this->Statistics->Take(this->Eye->Accumulation.GetFrame(),
         this->IsDraft(done) ? 0 : this->Eye->Accumulation.GetSamples(),
-        this->Eye->Accumulation.GetWanted(), done.Coarser);
+        this->Eye->Accumulation.GetWanted(), this->GetLevel(done));
     });
   if (!this->DrawsDrafts() && (done.Coarser > 0 || task.Coarser > 0))
   {
@@ -252,7 +261,7 @@ void vtkDSMScene::Internals::NoteAborted(const Task& task, const Try& begun)
       [&]
       {
         this->Statistics->Take(frame, this->Eye->Accumulation.GetSamples(),
-          this->Eye->Accumulation.GetWanted(), begun.Coarser);
+          this->Eye->Accumulation.GetWanted(), this->GetLevel(begun));
       });
   }
   if (!hasBegun)
