@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMRayTracing/frame/Resolution.h"
+#include "DSMRayTracing/frame/SampleWidth.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,3 +100,44 @@ TEST(Resolution, KnowsTheContentAtRestAndInMotion)
 }
 
 } // namespace
+
+/// Samples are a tenth of the world's unit apart, along each axis, in a cube of edge 1 around the origin.
+TEST(SampleWidth, IsThatOfTheNearestSamplesInThePicture)
+{
+  const glm::dmat4 indexToWorld =
+    glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(-0.5)), glm::dvec3(0.1));
+  rt::FrameRequest request;
+  request.Width = 200;
+  request.Height = 100;
+  const auto getWidth = [&] { return rt::GetSampleWidth(request, indexToWorld, glm::dvec3(10.0)); };
+
+  // A world unit is 100 pixels on each axis.
+  request.WorldToClip = glm::ortho(-1.0, 1.0, -0.5, 0.5, 1.0, 9.0) *
+    glm::lookAt(glm::dvec3(0.0, 0.0, 5.0), glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 0.0));
+  EXPECT_NEAR(getWidth(), 10.0, 1e-9);
+
+  const auto look = [&](double distance, double x)
+  {
+    request.WorldToClip = glm::perspective(0.5, 2.0, 0.01, 100.0) *
+      glm::lookAt(glm::dvec3(x, 0.0, distance), glm::dvec3(x, 0.0, 0.0), glm::dvec3(0.0, 1.0, 0.0));
+  };
+  const auto getExact = [](double depth) { return 0.1 * 50.0 / (std::tan(0.25) * depth); };
+  for (const double distance : { 2.0, 5.0, 20.0 })
+  {
+    look(distance, 0.0);
+    EXPECT_GE(getWidth(), 0.99 * getExact(distance - 0.5));
+    EXPECT_LE(getWidth(), 1.2 * getExact(distance - 0.5));
+  }
+  // The nearest corner of the cube is beside the picture, but the middle of its face is in it.
+  look(0.6, 0.0);
+  EXPECT_NEAR(getWidth(), getExact(0.1), 0.2 * getExact(0.1));
+  // The whole cube is.
+  look(2.0, 50.0);
+  EXPECT_EQ(getWidth(), 0.0);
+  request.WorldToClip = glm::perspective(0.5, 2.0, 0.01, 100.0) *
+    glm::lookAt(glm::dvec3(0.0, 0.0, 2.0), glm::dvec3(0.0, 0.0, 9.0), glm::dvec3(0.0, 1.0, 0.0));
+  EXPECT_EQ(getWidth(), 0.0);
+  // A camera among the samples has some at its near plane, about.
+  look(0.2, 0.0);
+  EXPECT_GT(getWidth(), getExact(0.1));
+}
