@@ -61,6 +61,47 @@ EmbreeMesh::EmbreeMesh(const MeshFile::Mesh& mesh, int threads)
 
 EmbreeMesh::~EmbreeMesh() = default;
 
+namespace
+{
+
+/// How rays that belong together are traced.
+struct CoherentQuery
+{
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments Arguments;
+  CoherentQuery()
+  {
+    rtcInitIntersectArguments(&this->Arguments);
+    this->Arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  }
+  void Intersect(RTCScene scene, RTCRayHit& ray)
+  {
+    rtcIntersect1(scene, &ray, &this->Arguments);
+  }
+  void Intersect(const int* valid, RTCScene scene, RTCRayHit16& rays)
+  {
+    rtcIntersect16(valid, scene, &rays, &this->Arguments);
+  }
+#else
+  RTCIntersectContext Context;
+  CoherentQuery()
+  {
+    rtcInitIntersectContext(&this->Context);
+    this->Context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+  void Intersect(RTCScene scene, RTCRayHit& ray)
+  {
+    rtcIntersect1(scene, &this->Context, &ray);
+  }
+  void Intersect(const int* valid, RTCScene scene, RTCRayHit16& rays)
+  {
+    rtcIntersect16(valid, scene, &this->Context, &rays);
+  }
+#endif
+};
+
+} // namespace
+
 bool EmbreeMesh::Intersect(const rt::Ray& ray, double& t) const
 {
   RTCRayHit query{};
@@ -74,17 +115,44 @@ bool EmbreeMesh::Intersect(const rt::Ray& ray, double& t) const
   query.ray.tfar = static_cast<float>(ray.Max);
   query.ray.mask = ~0u;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect1(this->Scene->Scene, &query, &arguments);
-#else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect1(this->Scene->Scene, &context, &query);
-#endif
+  CoherentQuery().Intersect(this->Scene->Scene, query);
   t = static_cast<double>(query.ray.tfar);
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+std::uint32_t EmbreeMesh::Intersect16(const rt::Ray* rays, std::uint32_t wanted, double* t) const
+{
+  constexpr int count = 16;
+  alignas(64) int valid[count];
+  RTCRayHit16 query{};
+  for (int index = 0; index < count; ++index)
+  {
+    const bool isWanted = (wanted >> index & 1u) != 0;
+    valid[index] = isWanted ? -1 : 0;
+    query.hit.geomID[index] = RTC_INVALID_GEOMETRY_ID;
+    if (isWanted)
+    {
+      const rt::Ray& ray = rays[index];
+      query.ray.org_x[index] = static_cast<float>(ray.Origin.x);
+      query.ray.org_y[index] = static_cast<float>(ray.Origin.y);
+      query.ray.org_z[index] = static_cast<float>(ray.Origin.z);
+      query.ray.dir_x[index] = static_cast<float>(ray.Direction.x);
+      query.ray.dir_y[index] = static_cast<float>(ray.Direction.y);
+      query.ray.dir_z[index] = static_cast<float>(ray.Direction.z);
+      query.ray.tnear[index] = static_cast<float>(ray.Min);
+      query.ray.tfar[index] = static_cast<float>(ray.Max);
+      query.ray.mask[index] = ~0u;
+    }
+  }
+  CoherentQuery().Intersect(valid, this->Scene->Scene, query);
+  std::uint32_t found = 0;
+  for (int index = 0; index < count; ++index)
+  {
+    if (valid[index] != 0 && query.hit.geomID[index] != RTC_INVALID_GEOMETRY_ID)
+    {
+      t[index] = static_cast<double>(query.ray.tfar[index]);
+      found |= 1u << index;
+    }
+  }
+  return found;
 }

@@ -6,6 +6,7 @@
 
 #include "DSMRayTracing/ray/Ray.h"
 
+#include <cstdint>
 #include <memory>
 
 /// The same mesh in Intel's Embree, for comparison; benchmarks only.
@@ -21,6 +22,9 @@ public:
 
   /// One ray at a time. May be called by several threads at a time. `t` is set where it hits.
   bool Intersect(const rt::Ray& ray, double& t) const;
+
+  /// The same for those of 16 rays that are `wanted`, together. Returns those that hit something.
+  std::uint32_t Intersect16(const rt::Ray* rays, std::uint32_t wanted, double* t) const;
 
 private:
   struct Handles;

@@ -24,8 +24,10 @@
 #include <functional>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace
 {
@@ -311,46 +313,80 @@ Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Me
   const EmbreeMesh embree(triangles, threads);
   const rt::MeshInstance instance(mesh, glm::dmat4(1.0));
   const Orbit orbit(*mesh);
-  RayResult packets;
-  RayResult singles;
-  RayResult theirs;
+  // In turn, so that a change of the machine's load meets all alike.
+  const std::pair<const char*, std::function<RayResult(int)>> tracers[] = {
+    { "packets",
+      [&](int position)
+      {
+        return store.Visit([&](auto& blocks)
+          { return TraceOwnRays(options, orbit, threads, position, instance, true, blocks); });
+      } },
+    { "single_rays",
+      [&](int position)
+      {
+        return store.Visit([&](auto& blocks)
+          { return TraceOwnRays(options, orbit, threads, position, instance, false, blocks); });
+      } },
+    { "embree_packets",
+      [&](int position)
+      {
+        return TraceRays(options, orbit, threads, position,
+          [&](int)
+          {
+            return [&](const rt::Ray* rays, Mask wanted, double* t)
+            { return embree.Intersect16(rays, wanted, t); };
+          });
+      } },
+    { "embree_single_rays",
+      [&](int position)
+      {
+        return TraceRays(options, orbit, threads, position,
+          [&](int)
+          {
+            return [&](const rt::Ray* rays, Mask wanted, double* t)
+            {
+              return TraceOneByOne(rays, wanted, t,
+                [&](const rt::Ray& ray, double& at) { return embree.Intersect(ray, at); });
+            };
+          });
+      } },
+  };
+  std::map<std::string, RayResult> results;
   for (int position = 0; position < options.Frames; ++position)
   {
-    std::vector<RayResult> rounds[3];
+    std::map<std::string, std::vector<RayResult>> rounds;
     for (int repeat = 0; repeat < options.Repeat; ++repeat)
     {
-      for (const bool together : { true, false })
+      for (const auto& [name, trace] : tracers)
       {
-        rounds[together ? 0 : 1].push_back(store.Visit([&](auto& blocks)
-          { return TraceOwnRays(options, orbit, threads, position, instance, together, blocks); }));
+        rounds[name].push_back(trace(position));
       }
-      rounds[2].push_back(TraceRays(options, orbit, threads, position,
-        [&](int)
-        {
-          return [&](const rt::Ray* rays, Mask wanted, double* t)
-          {
-            return TraceOneByOne(rays, wanted, t,
-              [&](const rt::Ray& ray, double& at) { return embree.Intersect(ray, at); });
-          };
-        }));
     }
-    packets.AddFastest(rounds[0]);
-    singles.AddFastest(rounds[1]);
-    theirs.AddFastest(rounds[2]);
+    for (const auto& [name, round] : rounds)
+    {
+      results[name].AddFastest(round);
+    }
   }
   const double rays = static_cast<double>(options.Width) * options.Height * options.Frames;
-  const auto describe = [&](const RayResult& result)
+  const auto getRatio = [&](const char* theirs, double RayResult::*seconds, const RayResult& mine)
+  { return results.at(theirs).*seconds / (mine.*seconds); };
+  Json compared{ { "embree", EmbreeMesh::GetVersion() } };
+  for (const auto& [name, trace] : tracers)
   {
-    return Json{ { "rays_per_second", rays / result.Seconds },
+    const RayResult& result = results.at(name);
+    compared[name] = { { "rays_per_second", rays / result.Seconds },
       { "rays_per_processor_second", rays / result.ProcessorSeconds }, { "hits", result.Hits },
       { "mean_distance", result.Sum / static_cast<double>(result.Hits) },
-      { "ratio", theirs.Seconds / result.Seconds },
-      { "processor_ratio", theirs.ProcessorSeconds / result.ProcessorSeconds } };
-  };
-  return { { "embree", EmbreeMesh::GetVersion() }, { "packets", describe(packets) },
-    { "single_rays", describe(singles) }, { "embree_single_rays", describe(theirs) },
-    { "build_seconds", buildSeconds }, { "embree_build_seconds", embree.GetBuildSeconds() },
-    { "build_ratio", buildSeconds / embree.GetBuildSeconds() } };
+      { "ratio", getRatio("embree_single_rays", &RayResult::Seconds, result) },
+      { "processor_ratio", getRatio("embree_single_rays", &RayResult::ProcessorSeconds, result) },
+      { "packet_ratio", getRatio("embree_packets", &RayResult::Seconds, result) },
+      { "packet_processor_ratio",
+        getRatio("embree_packets", &RayResult::ProcessorSeconds, result) } };
+  }
+  compared["build_seconds"] = buildSeconds;
+  compared["embree_build_seconds"] = embree.GetBuildSeconds();
+  compared["build_ratio"] = buildSeconds / embree.GetBuildSeconds();
+  return compared;
 }
 
 #endif
@@ -441,10 +477,13 @@ void MeshBenchmark::Run(const Options& options, dsm::Messenger& messenger)
               << 1e-6 * peer[name]["rays_per_second"].get<double>() << " million/s, "
               << 1e-6 * peer[name]["rays_per_processor_second"].get<double>()
               << " a processor second: " << peer[name]["ratio"].get<double>() << " and "
-              << peer[name]["processor_ratio"].get<double>() << " of Embree\n";
+              << peer[name]["processor_ratio"].get<double>() << " of Embree's single rays, "
+              << peer[name]["packet_ratio"].get<double>() << " and "
+              << peer[name]["packet_processor_ratio"].get<double>() << " of its packets\n";
       };
       write("packets");
       write("single_rays");
+      write("embree_packets");
       write("embree_single_rays");
       table << "  building took " << peer["build_ratio"].get<double>() << " x as long\n";
     }

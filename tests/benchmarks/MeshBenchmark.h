@@ -13,7 +13,7 @@
 
 /// Frames of a mesh out of shared bricks: the paper's Figure 8 (frame rate and misses by the size of
 /// the cache, for three orders of the triangles), bytes for each triangle, and, on one rank where
-/// Embree is there, building and single rays against it in the same run.
+/// Embree is there, building, packets and single rays beside it in the same run.
 class MeshBenchmark
 {
 public:
