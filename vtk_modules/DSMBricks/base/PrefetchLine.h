@@ -5,8 +5,9 @@
 namespace bricks
 {
 
-/// Hints the processor to load a line of memory that is read soon. The address may be any.
-inline void PrefetchLine(const void* address)
+/// Hints the processor to load a line of memory that is read soon. The address may be any. Always inlined, as functions
+/// must be that do nothing else but call this: GCC 12 takes them for pure ones, and leaves the calls out.
+[[gnu::always_inline]] inline void PrefetchLine(const void* address)
 {
 #if defined(__GNUC__)
   __builtin_prefetch(address);
