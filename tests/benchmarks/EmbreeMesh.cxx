@@ -120,38 +120,46 @@ bool EmbreeMesh::Intersect(const rt::Ray& ray, double& t) const
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-std::uint32_t EmbreeMesh::Intersect16(const rt::Ray* rays, std::uint32_t wanted, double* t) const
+rt::RayMask EmbreeMesh::IntersectPackets(const rt::Ray* rays, rt::RayMask wanted, double* t) const
 {
-  constexpr int count = 16;
-  alignas(64) int valid[count];
-  RTCRayHit16 query{};
-  for (int index = 0; index < count; ++index)
+  constexpr int size = 16;
+  rt::RayMask found = 0;
+  for (int first = 0; first < rt::MaxRays; first += size)
   {
-    const bool isWanted = (wanted >> index & 1u) != 0;
-    valid[index] = isWanted ? -1 : 0;
-    query.hit.geomID[index] = RTC_INVALID_GEOMETRY_ID;
-    if (isWanted)
+    if (rt::GetPart(wanted, first, size) == 0)
     {
-      const rt::Ray& ray = rays[index];
-      query.ray.org_x[index] = static_cast<float>(ray.Origin.x);
-      query.ray.org_y[index] = static_cast<float>(ray.Origin.y);
-      query.ray.org_z[index] = static_cast<float>(ray.Origin.z);
-      query.ray.dir_x[index] = static_cast<float>(ray.Direction.x);
-      query.ray.dir_y[index] = static_cast<float>(ray.Direction.y);
-      query.ray.dir_z[index] = static_cast<float>(ray.Direction.z);
-      query.ray.tnear[index] = static_cast<float>(ray.Min);
-      query.ray.tfar[index] = static_cast<float>(ray.Max);
-      query.ray.mask[index] = ~0u;
+      continue;
     }
-  }
-  CoherentQuery().Intersect(valid, this->Scene->Scene, query);
-  std::uint32_t found = 0;
-  for (int index = 0; index < count; ++index)
-  {
-    if (valid[index] != 0 && query.hit.geomID[index] != RTC_INVALID_GEOMETRY_ID)
+    alignas(64) int valid[size];
+    RTCRayHit16 query;
+    for (int lane = 0; lane < size; ++lane)
     {
-      t[index] = static_cast<double>(query.ray.tfar[index]);
-      found |= 1u << index;
+      const int index = first + lane;
+      valid[lane] = (wanted & rt::GetBit(index)) != 0 ? -1 : 0;
+      query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      if (valid[lane] != 0)
+      {
+        const rt::Ray& ray = rays[index];
+        query.ray.org_x[lane] = static_cast<float>(ray.Origin.x);
+        query.ray.org_y[lane] = static_cast<float>(ray.Origin.y);
+        query.ray.org_z[lane] = static_cast<float>(ray.Origin.z);
+        query.ray.dir_x[lane] = static_cast<float>(ray.Direction.x);
+        query.ray.dir_y[lane] = static_cast<float>(ray.Direction.y);
+        query.ray.dir_z[lane] = static_cast<float>(ray.Direction.z);
+        query.ray.tnear[lane] = static_cast<float>(ray.Min);
+        query.ray.tfar[lane] = static_cast<float>(ray.Max);
+        query.ray.time[lane] = 0.0f;
+        query.ray.mask[lane] = ~0u;
+      }
+    }
+    CoherentQuery().Intersect(valid, this->Scene->Scene, query);
+    for (int lane = 0; lane < size; ++lane)
+    {
+      if (valid[lane] != 0 && query.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID)
+      {
+        t[first + lane] = static_cast<double>(query.ray.tfar[lane]);
+        found |= rt::GetBit(first + lane);
+      }
     }
   }
   return found;

@@ -5,8 +5,8 @@
 #include "tests/support/MeshFile.h"
 
 #include "DSMRayTracing/ray/Ray.h"
+#include "DSMRayTracing/ray/RayMask.h"
 
-#include <cstdint>
 #include <memory>
 
 /// The same mesh in Intel's Embree, for comparison; benchmarks only.
@@ -23,8 +23,8 @@ public:
   /// One ray at a time. May be called by several threads at a time. `t` is set where it hits.
   bool Intersect(const rt::Ray& ray, double& t) const;
 
-  /// The same for those of 16 rays that are `wanted`, together. Returns those that hit something.
-  std::uint32_t Intersect16(const rt::Ray* rays, std::uint32_t wanted, double* t) const;
+  /// The same for those of a batch of rays that are `wanted`, 16 at a time. Returns those that hit something.
+  rt::RayMask IntersectPackets(const rt::Ray* rays, rt::RayMask wanted, double* t) const;
 
 private:
   struct Handles;

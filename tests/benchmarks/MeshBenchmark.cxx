@@ -140,8 +140,8 @@ FrameResult TraceFrames(const MeshBenchmark::Options& options,
 
 #ifdef DSM_HAS_EMBREE
 
-/// What tracing a ray through every pixel took. `start(worker)` gives what finds the hits of a block
-/// of 4 x 4 pixels for a worker: Mask(const rt::Ray*, Mask wanted, double* t).
+/// What tracing a ray through every pixel took. `start(worker)` gives what finds the hits of a box of 8 x 8 pixels, in
+/// blocks of 4 x 4, for a worker: rt::RayMask(const rt::Ray*, rt::RayMask wanted, double* t).
 struct RayResult
 {
   double Seconds = 0.0;
@@ -176,8 +176,6 @@ double GetProcessorSeconds()
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-using Mask = rt::MeshPacket::Mask;
-
 template <class Start>
 RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, int threads,
   int position, const Start& start)
@@ -187,29 +185,34 @@ RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, i
   std::vector<RayResult> results(threads);
   std::atomic<int> next{ 0 };
   constexpr int tileEdge = 16;
+  constexpr int boxEdge = 8;
   constexpr int blockEdge = 4;
   const int columns = (request.Width + tileEdge - 1) / tileEdge;
   const int tiles = columns * ((request.Height + tileEdge - 1) / tileEdge);
-  const auto traceBlock = [&](auto& intersect, int left, int bottom, RayResult& result)
+  const auto traceBox = [&](auto& intersect, int left, int bottom, RayResult& result)
   {
-    rt::Ray rays[rt::MeshPacket::Size];
-    double t[rt::MeshPacket::Size];
-    Mask wanted = 0;
-    for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
+    rt::Ray rays[rt::MaxRays];
+    double t[rt::MaxRays];
+    rt::RayMask wanted = 0;
+    for (int index = 0; index < rt::MaxRays; ++index)
     {
-      const int x = left + lane % blockEdge;
-      const int y = bottom + lane / blockEdge;
+      const int block = index / (blockEdge * blockEdge);
+      const int pixel = index % (blockEdge * blockEdge);
+      constexpr int blocks = boxEdge / blockEdge;
+      const int x = left + block % blocks * blockEdge + pixel % blockEdge;
+      const int y = bottom + block / blocks * blockEdge + pixel / blockEdge;
       if (x < request.Width && y < request.Height)
       {
-        rays[lane] = pixels.GetRay(x, y);
-        wanted |= Mask{ 1 } << lane;
+        rays[index] = pixels.GetRay(x, y);
+        wanted |= rt::GetBit(index);
       }
     }
-    for (Mask found = intersect(rays, wanted, t); found != 0; found &= found - 1)
-    {
-      ++result.Hits;
-      result.Sum += t[rt::GetLowest(found)];
-    }
+    rt::ForEachRay(intersect(rays, wanted, t),
+      [&](int index)
+      {
+        ++result.Hits;
+        result.Sum += t[index];
+      });
   };
   const auto work = [&](int worker)
   {
@@ -218,11 +221,11 @@ RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, i
     const double begin = GetProcessorSeconds();
     for (int tile = next++; tile < tiles; tile = next++)
     {
-      for (int block = 0; block < tileEdge * tileEdge / (blockEdge * blockEdge); ++block)
+      for (int box = 0; box < tileEdge * tileEdge / (boxEdge * boxEdge); ++box)
       {
-        constexpr int across = tileEdge / blockEdge;
-        traceBlock(intersect, tile % columns * tileEdge + block % across * blockEdge,
-          tile / columns * tileEdge + block / across * blockEdge, mine);
+        constexpr int across = tileEdge / boxEdge;
+        traceBox(intersect, tile % columns * tileEdge + box % across * boxEdge,
+          tile / columns * tileEdge + box / across * boxEdge, mine);
       }
     }
     mine.ProcessorSeconds = GetProcessorSeconds() - begin;
@@ -251,15 +254,10 @@ RayResult TraceRays(const MeshBenchmark::Options& options, const Orbit& orbit, i
 
 /// Finds the hits of rays one by one; `intersect` is bool(const rt::Ray&, double& t).
 template <class Intersect>
-Mask TraceOneByOne(const rt::Ray* rays, Mask wanted, double* t, const Intersect& intersect)
+rt::RayMask TraceOneByOne(
+  const rt::Ray* rays, rt::RayMask wanted, double* t, const Intersect& intersect)
 {
-  Mask found = 0;
-  for (; wanted != 0; wanted &= wanted - 1)
-  {
-    const int index = rt::GetLowest(wanted);
-    found |= Mask{ intersect(rays[index], t[index]) } << index;
-  }
-  return found;
+  return rt::FindRays(wanted, [&](int index) { return intersect(rays[index], t[index]); });
 }
 
 /// One rank has all bricks, so nothing needs to be served.
@@ -285,7 +283,7 @@ RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit
     {
       auto session = std::make_shared<Session>(store, worker);
       return [session, tracer = rt::MeshSearch<Store>(store, session->Self), &instance, together](
-               const rt::Ray* rays, Mask wanted, double* t)
+               const rt::Ray* rays, rt::RayMask wanted, double* t)
       {
         if (!together)
         {
@@ -298,8 +296,12 @@ RayResult TraceOwnRays(const MeshBenchmark::Options& options, const Orbit& orbit
               return found;
             });
         }
-        return static_cast<Mask>(tracer.Intersect(
-          instance, rays, wanted, [=](int index, const rt::MeshHit& hit) { t[index] = hit.T; }));
+        return tracer.Intersect(instance, rays, wanted,
+          [=](int index, double at) -> rt::MeshHit*
+          {
+            t[index] = at;
+            return nullptr;
+          });
       };
     });
   store.EndFrame();
@@ -333,8 +335,8 @@ Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Me
         return TraceRays(options, orbit, threads, position,
           [&](int)
           {
-            return [&](const rt::Ray* rays, Mask wanted, double* t)
-            { return embree.Intersect16(rays, wanted, t); };
+            return [&](const rt::Ray* rays, rt::RayMask wanted, double* t)
+            { return embree.IntersectPackets(rays, wanted, t); };
           });
       } },
     { "embree_single_rays",
@@ -343,7 +345,7 @@ Json CompareWithEmbree(const MeshBenchmark::Options& options, const MeshFile::Me
         return TraceRays(options, orbit, threads, position,
           [&](int)
           {
-            return [&](const rt::Ray* rays, Mask wanted, double* t)
+            return [&](const rt::Ray* rays, rt::RayMask wanted, double* t)
             {
               return TraceOneByOne(rays, wanted, t,
                 [&](const rt::Ray& ray, double& at) { return embree.Intersect(ray, at); });

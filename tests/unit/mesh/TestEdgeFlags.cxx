@@ -94,7 +94,7 @@ TEST(EdgeFlags, TurnWithTheCorners)
         }
         const std::vector<rt::Ray> rays = CreatePacket();
         rt::MeshHit hits[rt::MeshPacket::Size];
-        constexpr rt::MeshPacket::Mask all = (1u << rt::MeshPacket::Size) - 1u;
+        constexpr rt::RayMask all = ~rt::RayMask{ 0 };
         EXPECT_EQ(tracer.Intersect(instance, rays.data(), all, KeepIn(hits)), all);
         for (int index = 0; index < rt::MeshPacket::Size; ++index)
         {

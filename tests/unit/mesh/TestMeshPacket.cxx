@@ -40,7 +40,7 @@ std::vector<Packet> CreateBlocks(int count, double spread, unsigned seed,
     for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
     {
       const glm::dvec3 shift =
-        spread * radius * ((lane % 4 - 1.5) * side + (lane / 4 - 1.5 + 0.1 * uniform(random)) * up);
+        spread * radius * ((lane % 8 - 3.5) * side + (lane / 8 - 3.5 + 0.1 * uniform(random)) * up);
       rt::Ray ray = middle;
       (parallel ? ray.Origin : ray.Direction) += (parallel ? 1.0 : 0.3) * shift;
       packet.push_back(ray);
@@ -68,6 +68,141 @@ void ExpectEqual(const rt::MeshHit& hit, const rt::MeshHit& expected)
   }
 }
 
+/// Rays from all sides through points of triangles: corners, places on edges, and just beside them.
+std::vector<Packet> AimAtEdges(const Mesh& mesh, int count, unsigned seed, double size)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Packet> packets;
+  const std::uint64_t triangles = mesh.GetTriangleCount();
+  for (const rt::Ray& from : CreateRays(count, seed))
+  {
+    Packet packet;
+    const std::uint64_t first = random() % triangles;
+    for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
+    {
+      // Neighbors, so that rays share nodes.
+      const std::uint64_t triangle = (first + random() % 8) % triangles;
+      const glm::dvec3 a = GetPoint(mesh, triangle, lane % 3);
+      const glm::dvec3 b = GetPoint(mesh, triangle, (lane + 1) % 3);
+      const double place = lane % 4 == 0 ? 0.0 : lane % 4 == 1 ? 0.5 : uniform(random);
+      glm::dvec3 target = a + place * (b - a);
+      if (lane % 4 == 3)
+      {
+        target += 1e-7 * uniform(random) * (b - a);
+      }
+      rt::Ray ray;
+      ray.Origin = size * from.Origin;
+      ray.Direction = target - ray.Origin;
+      ray.Max = 1e30;
+      packet.push_back(ray);
+    }
+    packets.push_back(packet);
+  }
+  return packets;
+}
+
+/// Triangles that share edges, most of them much longer than wide.
+Mesh CreateSlivers(int count, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto addPoint = [](Mesh& mesh, const glm::dvec3& point)
+  {
+    mesh.Positions.insert(mesh.Positions.end(),
+      { static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z) });
+  };
+  Mesh mesh;
+  for (int fan = 0; fan < count; ++fan)
+  {
+    // A fan around an edge.
+    const std::uint64_t start = mesh.GetPointCount();
+    const glm::dvec3 a(uniform(random), uniform(random), uniform(random));
+    const glm::dvec3 along(uniform(random), uniform(random), uniform(random));
+    addPoint(mesh, a);
+    addPoint(mesh, a + along);
+    for (std::uint64_t blade = 0; blade < 4; ++blade)
+    {
+      const double width = std::pow(10.0, 3.5 * uniform(random) - 3.5);
+      const glm::dvec3 aside(uniform(random), uniform(random), uniform(random));
+      addPoint(mesh, a + std::abs(uniform(random)) * along + width * aside);
+      mesh.Triangles.insert(mesh.Triangles.end(), { start, start + 1, start + 2 + blade });
+    }
+  }
+  return mesh;
+}
+
+/// The same mesh elsewhere.
+Mesh Move(Mesh mesh, double scale, const glm::dvec3& shift)
+{
+  for (std::size_t place = 0; place < mesh.Positions.size(); ++place)
+  {
+    mesh.Positions[place] = scale * mesh.Positions[place] + shift[static_cast<int>(place % 3)];
+  }
+  return mesh;
+}
+
+std::vector<Packet> Move(std::vector<Packet> packets, double scale, const glm::dvec3& shift)
+{
+  for (Packet& packet : packets)
+  {
+    for (rt::Ray& ray : packet)
+    {
+      ray.Origin = scale * ray.Origin + shift;
+      ray.Direction *= scale;
+    }
+  }
+  return packets;
+}
+
+/// The hit that the test in double precision finds, tried on all triangles of all bricks.
+rt::NearestTriangle TryAll(dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
+  const rt::MeshInstance& instance, const rt::Ray& ray)
+{
+  rt::NearestTriangle nearest;
+  rt::ShearedRay line;
+  if (instance.GetMeshRay(ray, line))
+  {
+    const auto& segment = *instance.GetMesh().Segment;
+    for (std::uint32_t number = 0; number < segment.GetDirectory().GetCount(); ++number)
+    {
+      const dsm::ObjectStore::Pin pin = store.Acquire(worker, segment, number);
+      const bricks::TriangleBrick brick(pin.GetData());
+      for (std::uint32_t triangle = 0; triangle < brick.GetHeader().Triangles; ++triangle)
+      {
+        if (nearest.Try(line.Triangles, instance.Culling, brick, number, triangle))
+        {
+          line.Shorten(nearest.Hit.T);
+        }
+      }
+    }
+  }
+  return nearest;
+}
+
+/// Rays alone, every one of them, beside TryAll.
+void CompareWithAll(dsm::ObjectStore& store, dsm::ObjectStore::Worker& worker,
+  const rt::MeshInstance& instance, const std::vector<Packet>& packets)
+{
+  const Tracer alone(store, worker);
+  for (const Packet& rays : packets)
+  {
+    for (const rt::Ray& ray : rays)
+    {
+      const rt::NearestTriangle expected = TryAll(store, worker, instance, ray);
+      rt::MeshHit hit;
+      ASSERT_EQ(alone.Intersect(instance, ray, hit), expected.Found);
+      if (expected.Found)
+      {
+        ASSERT_EQ(hit.T, expected.Hit.T);
+        ASSERT_EQ(hit.Front, expected.Hit.Front);
+        ASSERT_EQ(hit.Brick, expected.Hit.Brick);
+        ASSERT_EQ(hit.Triangle, expected.Hit.Triangle);
+      }
+    }
+  }
+}
+
 /// With every kernel, for all rays of a packet and for some.
 Tally ComparePackets(const bricks::TriangleSource& mesh, const std::vector<Packet>& packets,
   const glm::dmat4& matrix = glm::dmat4(1.0), const rt::MeshCulling& culling = {},
@@ -81,16 +216,23 @@ Tally ComparePackets(const bricks::TriangleSource& mesh, const std::vector<Packe
     {
       rt::MeshInstance instance(published, matrix);
       instance.Culling = culling;
+      if (published->Triangles < 3000)
+      {
+        CompareWithAll(store, worker, instance, packets);
+      }
       const Tracer alone(store, worker);
       for (const rt::MeshKernel& kernel : rt::MeshKernel::GetAll())
       {
         SCOPED_TRACE(kernel.Name);
         const Tracer tracer(store, worker, kernel);
-        std::mt19937 random(1);
+        std::mt19937_64 random(1);
         for (std::size_t number = 0; number < packets.size(); ++number)
         {
           const Packet& rays = packets[number];
-          const rt::MeshPacket::Mask wanted = number % 3 == 0 ? 0xffffu : random() & 0xffffu;
+          // All, half of them, or a few.
+          const rt::RayMask wanted = number % 3 == 0 ? ~rt::RayMask{ 0 }
+            : number % 3 == 1                        ? random()
+                                                     : random() & random() & random() & random();
           rt::MeshHit hits[rt::MeshPacket::Size];
           const rt::RayMask found = tracer.Intersect(instance, rays.data(), wanted, KeepIn(hits));
           EXPECT_EQ(found & ~wanted, 0u);
@@ -114,10 +256,9 @@ Tally ComparePackets(const bricks::TriangleSource& mesh, const std::vector<Packe
             }
           }
           rt::MeshPacket packet;
-          rt::MeshPacket::Mask single = 0;
-          const auto together = kernel.SetRays(packet, instance, rays.data(), 0xffffu, single);
-          EXPECT_EQ(together & single, 0u);
-          tally.Together += __builtin_popcount(together) > 1 ? __builtin_popcount(together) : 0;
+          const int together =
+            rt::GetCount(kernel.SetRays(packet, instance, rays.data(), ~rt::RayMask{ 0 }));
+          tally.Together += together > 1 ? together : 0;
         }
       }
     },
@@ -189,13 +330,58 @@ TEST(MeshPackets, RaysThroughEdgesAndCorners)
     Packet packet(rt::MeshPacket::Size);
     for (int lane = 0; lane < rt::MeshPacket::Size; ++lane)
     {
-      packet[lane].Origin = { (block % 7 + lane % 4) / 10.0, (block % 6 + lane / 4) / 10.0, 3.0 };
+      packet[lane].Origin = { (block % 4 + lane % 8) / 10.0, (block % 3 + lane / 8) / 10.0, 3.0 };
       packet[lane].Direction = { 0.0, 0.0, -1.0 };
       packet[lane].Max = 10.0;
     }
     packets.push_back(packet);
   }
   EXPECT_GT(ComparePackets(CreateTerrain(10), packets).Hits, 1000);
+}
+
+TEST(MeshPackets, SliversAndTheirSharedEdges)
+{
+  const Mesh slivers = CreateSlivers(200, 41);
+  EXPECT_GT(ComparePackets(slivers, AimAtEdges(slivers, 60, 42, 1.0)).Hits, 1000);
+  // From within, so that rays of a packet leave in all directions.
+  EXPECT_GT(ComparePackets(slivers, AimAtEdges(slivers, 60, 43, 0.1)).Hits, 1000);
+}
+
+TEST(MeshPackets, HugeTinyAndFarFromTheOrigin)
+{
+  const Mesh slivers = CreateSlivers(100, 44);
+  const Mesh blob = CreateBlob(3);
+  for (const double scale : { 1e-18, 1e-6, 1e6, 1e18 })
+  {
+    SCOPED_TRACE(scale);
+    for (const glm::dvec3& shift : { glm::dvec3(0.0), scale * glm::dvec3(3e4, -5e5, 7.0) })
+    {
+      EXPECT_GT(ComparePackets(
+                  Move(slivers, scale, shift), Move(AimAtEdges(slivers, 20, 45, 1.0), scale, shift))
+                  .Hits,
+        200);
+      EXPECT_GT(
+        ComparePackets(Move(blob, scale, shift), Move(CreateBlocks(20, 0.02, 46), scale, shift))
+          .Hits,
+        200);
+    }
+  }
+}
+
+TEST(MeshPackets, RaysFromOnePlaceInAllDirections)
+{
+  std::vector<Packet> packets;
+  for (unsigned seed = 0; seed < 60; ++seed)
+  {
+    Packet packet = CreateRays(rt::MeshPacket::Size, 200 + seed);
+    for (rt::Ray& ray : packet)
+    {
+      ray.Direction = ray.Origin;
+      ray.Origin = 0.01 * packet.front().Direction;
+    }
+    packets.push_back(packet);
+  }
+  EXPECT_GT(ComparePackets(CreateBlob(3), packets).Hits, 1000);
 }
 
 TEST(MeshPackets, TrianglesThatAreThereTwice)
@@ -259,10 +445,10 @@ TEST(MeshPackets, RaysThatCannotHitDisturbNoOther)
   for (std::size_t number = 0; number < packets.size(); ++number)
   {
     Packet& packet = packets[number];
-    packet[number % 16].Direction = glm::dvec3(0.0);
-    packet[(number + 3) % 16].Origin.y = nan;
-    packet[(number + 7) % 16].Direction.z = std::numeric_limits<double>::infinity();
-    packet[(number + 11) % 16].Max = -1.0;
+    packet[number % 64].Direction = glm::dvec3(0.0);
+    packet[(number + 13) % 64].Origin.y = nan;
+    packet[(number + 27) % 64].Direction.z = std::numeric_limits<double>::infinity();
+    packet[(number + 41) % 64].Max = -1.0;
   }
   EXPECT_GT(ComparePackets(CreateBlob(4), packets).Hits, 1000);
 }

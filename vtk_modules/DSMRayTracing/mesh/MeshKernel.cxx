@@ -9,6 +9,7 @@
 #include "DSMRayTracing/mesh/MeshKernel.h"
 
 #include "DSMRayTracing/base/VectorKernel.h"
+#include "DSMRayTracing/mesh/MeshLeafSearch-inl.h"
 #include "DSMRayTracing/mesh/MeshPacketSetup-inl.h"
 #include "DSMRayTracing/mesh/MeshPacketWalk-inl.h"
 
@@ -29,181 +30,74 @@ class MeshSteps
 {
 public:
   using Mask = MeshPacket::Mask;
+  /// So many rays of a node, and fewer, continue alone.
+  static constexpr int FewRays = 8;
 
   static MeshKernel Create(const char* name)
   {
-    return { name, MeshPacketWalk<D>::Width, &SetRays, &FindBricks, &SearchBrick, &FindOccluded };
+    return { name, static_cast<int>(hn::MaxLanes(D())), &SetRays, &FindBricks, &SearchBrick,
+      &FindOccluded };
   }
 
 private:
   static Mask SetRays(
-    MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted, Mask& alone)
+    MeshPacket& packet, const MeshInstance& instance, const Ray* rays, Mask wanted)
   {
-    alone = 0;
-    if (wanted == 0)
-    {
-      return 0;
-    }
     packet.Culling = instance.Culling;
-    return MeshPacketSetup<D>(packet, instance, rays, wanted).Set(alone);
+    return wanted == 0 ? 0 : MeshPacketSetup<D>(packet, instance, rays, wanted).Set();
   }
 
   static void FindBricks(const MeshPacket& packet, Mask rays, const bricks::BrickBvh& bricks,
     MeshKernel::Visitor& visitor)
   {
-    MeshPacketWalk<D>(packet).Traverse(
-      bricks.GetNodes(), rays, [](std::uint32_t) {},
-      [&](std::uint32_t leaf, Mask met) { visitor.Visit(bricks::BrickBvh::GetBrick(leaf), met); });
+    BrickVisit visit(visitor);
+    MeshPacketWalk<D>(packet).template Traverse<0>(bricks.GetNodes(), rays, visit);
   }
 
   static Mask SearchBrick(
     MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, std::uint32_t number)
   {
-    return Search(packet, rays, brick, NearestSearch(packet, brick, number));
+    return Search(packet, rays, brick, MeshNearestHits(packet, brick, number));
   }
 
   static Mask FindOccluded(MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick)
   {
-    return Search(packet, rays, brick, AnySearch(packet, brick));
+    return Search(packet, rays, brick, MeshAnyHits(packet, brick));
   }
-
-  /// Keeps the nearest hit of each ray.
-  class NearestSearch
-  {
-  public:
-    NearestSearch(MeshPacket& packet, const bricks::TriangleBrick& brick, std::uint32_t number)
-      : Packet(packet)
-      , Brick(brick)
-      , Number(number)
-    {
-    }
-
-    /// Returns whether the triangle is the ray's nearest hit so far.
-    HWY_INLINE bool Try(int index, std::uint32_t triangle)
-    {
-      NearestTriangle& nearest = this->Packet.Nearest[index];
-      const bool better = nearest.Try(this->Packet.GetTriangleRay(index), this->Packet.Culling,
-        this->Brick, this->Number, triangle);
-      if (better)
-      {
-        this->Packet.Shorten(index, nearest.Hit.T);
-      }
-      return better;
-    }
-    static constexpr bool EndsAtHit = false;
-
-  private:
-    MeshPacket& Packet;
-    const bricks::TriangleBrick& Brick;
-    std::uint32_t Number;
-  };
-
-  /// Ends each ray that hits anything.
-  class AnySearch
-  {
-  public:
-    AnySearch(MeshPacket& packet, const bricks::TriangleBrick& brick)
-      : Packet(packet)
-      , Brick(brick)
-    {
-    }
-
-    HWY_INLINE bool Try(int index, std::uint32_t triangle)
-    {
-      TriangleHit hit;
-      const bool meets = NearestTriangle::Meets(
-        this->Packet.GetTriangleRay(index), this->Packet.Culling, this->Brick, triangle, hit);
-      if (meets)
-      {
-        this->Packet.End(index);
-      }
-      return meets;
-    }
-    static constexpr bool EndsAtHit = true;
-
-  private:
-    MeshPacket& Packet;
-    const bricks::TriangleBrick& Brick;
-  };
 
   template <class Rule>
   static Mask Search(MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, Rule rule)
   {
-    for (Mask left = rays; left != 0; left &= left - 1)
+    for (int index = 0; index < MeshPacket::Size; ++index)
     {
-      packet.SetFilter(GetLowest(left), brick);
+      packet.FilterError[index] = FilterRay::GetError(packet.Uncertainty[index], brick);
     }
-    switch (packet.Axes[2])
-    {
-      case 0:
-        return SearchAlong<0>(packet, rays, brick, rule);
-      case 1:
-        return SearchAlong<1>(packet, rays, brick, rule);
-      default:
-        return SearchAlong<2>(packet, rays, brick, rule);
-    }
-  }
-
-  template <int Axis, class Rule>
-  static Mask SearchAlong(
-    MeshPacket& packet, Mask rays, const bricks::TriangleBrick& brick, Rule& rule)
-  {
-    using Walk = MeshPacketWalk<D>;
-    LeafSearch<Axis, Rule> search(packet, brick, rule);
-    Walk(packet).Traverse(
-      brick.GetNodes(), rays,
-      [&](std::uint16_t leaf)
-      { Walk::Fetch(brick.GetTriangle(bricks::TriangleBrick::Leaf(leaf).First), 1); },
-      [&](std::uint16_t leaf, Mask met) { search.Search(bricks::TriangleBrick::Leaf(leaf), met); });
+    MeshLeafSearch<D, Rule> search(packet, brick, rule);
+    MeshPacketWalk<D>(packet).template Traverse<FewRays>(brick.GetNodes(), rays, search);
     return search.GetFound();
   }
 
-  /// Tries the triangles of leaves.
-  template <int Axis, class Rule>
-  class LeafSearch
+  /// Visits the bricks that leaves stand for.
+  class BrickVisit
   {
   public:
-    LeafSearch(const MeshPacket& packet, const bricks::TriangleBrick& brick, Rule& rule)
-      : Packet(packet)
-      , Brick(brick)
-      , Hits(rule)
+    explicit BrickVisit(MeshKernel::Visitor& visitor)
+      : Visitor(visitor)
     {
     }
-
-    HWY_INLINE void Search(const bricks::TriangleBrick::Leaf& leaf, Mask rays)
+    HWY_INLINE void Fetch(std::uint32_t) const {}
+    HWY_INLINE void FetchMore(std::uint32_t) const {}
+    HWY_INLINE void Visit(std::uint32_t leaf, Mask rays)
     {
-      const TriangleFilter<Axis> filter(this->Brick, leaf.First);
-      for (; rays != 0; rays &= rays - 1)
-      {
-        const int index = GetLowest(rays);
-        unsigned candidates = filter.FindCandidates(this->Packet.Filters[index]) & leaf.GetMask();
-        for (; candidates != 0; candidates &= candidates - 1)
-        {
-          const auto lane = static_cast<std::uint32_t>(__builtin_ctz(candidates));
-          if (this->Hits.Try(index, leaf.First + lane))
-          {
-            this->Found |= Mask{ 1 } << index;
-            if constexpr (Rule::EndsAtHit)
-            {
-              break;
-            }
-          }
-        }
-      }
+      this->Visitor.Visit(bricks::BrickBvh::GetBrick(leaf), rays);
     }
-
-    /// Rays that have found something.
-    Mask GetFound() const { return this->Found; }
 
   private:
-    const MeshPacket& Packet;
-    const bricks::TriangleBrick& Brick;
-    Rule& Hits;
-    Mask Found = 0;
+    MeshKernel::Visitor& Visitor;
   };
 };
 
-RT_CREATE_KERNEL(MeshKernel, MeshSteps, float, MeshPacket::Size)
+RT_CREATE_KERNEL(MeshKernel, MeshSteps, float, MeshPacket::Block)
 
 } // namespace HWY_NAMESPACE
 } // namespace rt

@@ -34,10 +34,9 @@ struct MeshKernel
   const char* Name;
   int Width; ///< rays at once
 
-  /// Makes the packet of those rays of `wanted` (world space) that may meet the mesh and have in
-  /// common what they must. Returns the former; `alone` are those that must be traced one by one.
-  MeshPacket::Mask (*SetRays)(MeshPacket& packet, const MeshInstance& instance, const Ray* rays,
-    MeshPacket::Mask wanted, MeshPacket::Mask& alone);
+  /// Makes the packet of those rays of `wanted` (world space) that may meet the mesh, and returns them.
+  MeshPacket::Mask (*SetRays)(
+    MeshPacket& packet, const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted);
 
   /// Visits the bricks whose boxes any of `rays` meet before their ends, about front to back. A visit
   /// may shorten rays.

@@ -5,53 +5,63 @@
 #include "DSMRayTracing/mesh/MeshInstance.h"
 #include "DSMRayTracing/mesh/NearestTriangle.h"
 #include "DSMRayTracing/mesh/TriangleFilter.h"
-#include "DSMRayTracing/ray/RayPacket.h"
+#include "DSMRayTracing/ray/RayMask.h"
 #include "DSMRayTracing/ray/ShearedRay.h"
 
 namespace rt
 {
 
-/// Rays of one mesh that are traced together: ShearedRay, one array for each number. All move in the
-/// same direction on each axis, and most along the same one. They have nothing else in common: what
-/// one finds does not depend on the others, since boxes only save work, and each ray's triangles are
-/// decided on by NearestTriangle.
+/// Rays of one mesh that are traced together: ShearedRay, one array for each number. They need have nothing in common.
+/// A hit does not depend on the other rays, since boxes only save work, and each ray's triangles are decided on by
+/// NearestTriangle.
 struct MeshPacket
 {
-  static constexpr int Size = 16;
-  /// Bit i is ray i.
-  using Mask = std::uint32_t;
+  static constexpr int Size = MaxRays;
+  using Mask = RayMask;
+  /// The rays that vectors hold at most.
+  static constexpr int Block = 16;
+
+  /// The rays that move most along an axis, and those that move towards smaller coordinates.
+  Mask Along[3];
+  Mask Backward[3];
 
   // TriangleRay:
-  int Axes[3];
-  alignas(64) double Origin[3][Size]; ///< along Axes
+  alignas(64) double Origin[3][Size]; ///< along the ray's own axes, as Shear
   alignas(64) double Shear[3][Size];
   alignas(64) double Min[Size];
   alignas(64) double Max[Size];
 
   // BoxRay:
-  bool Backward[3]; ///< true if the rays move towards smaller coordinates
   alignas(64) float Start[3][Size];
   alignas(64) float Inverse[3][Size];
   alignas(64) float Margin[3][Size];
 
   // ShearedRay:
   alignas(64) float FilterShear[2][Size];
-  alignas(64) float BoxesEnd[Size];
+  alignas(64) float BoxesEnd[Size] = {};
   alignas(64) double StartT[Size];
   alignas(64) double BoxesPerT[Size];
-  alignas(64) float Uncertainty[Size];
+  alignas(64) float Uncertainty[Size] = {};
 
-  /// Filters for the brick that is being searched.
-  FilterRay Filters[Size];
+  /// FilterRay::Error for the brick that is being searched.
+  alignas(64) float FilterError[Size];
   NearestTriangle Nearest[Size];
   MeshCulling Culling;
+
+  bool IsBackward(int index, int axis) const { return (this->Backward[axis] >> index & 1) != 0; }
+  /// The axis along which a ray moves most.
+  int GetAxis(int index) const
+  {
+    return static_cast<int>((this->Along[1] >> index & 1) + 2 * (this->Along[2] >> index & 1));
+  }
 
   TriangleRay GetTriangleRay(int index) const
   {
     TriangleRay ray;
+    const int axis = this->GetAxis(index);
+    ray.SetAxes(axis, this->IsBackward(index, axis));
     for (int place = 0; place < 3; ++place)
     {
-      ray.Axes[place] = this->Axes[place];
       ray.Origin[place] = this->Origin[place][index];
       ray.Shear[place] = this->Shear[place][index];
     }
@@ -60,11 +70,10 @@ struct MeshPacket
     return ray;
   }
 
-  void SetFilter(int index, const bricks::TriangleBrick& brick)
+  FilterRay GetFilterRay(int index) const
   {
-    const float start[3] = { this->Start[0][index], this->Start[1][index], this->Start[2][index] };
-    const float shear[2] = { this->FilterShear[0][index], this->FilterShear[1][index] };
-    this->Filters[index] = FilterRay(start, shear, this->Uncertainty[index], brick);
+    return { { this->Start[0][index], this->Start[1][index], this->Start[2][index] },
+      { this->FilterShear[0][index], this->FilterShear[1][index] }, this->FilterError[index] };
   }
 
   void End(int index) { this->BoxesEnd[index] = ShearedRay::NoBoxes; }

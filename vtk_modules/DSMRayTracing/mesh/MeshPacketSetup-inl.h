@@ -46,6 +46,11 @@ public:
     const int any = GetLowest(wanted);
     for (int index = 0; index < Size; ++index)
     {
+      if (GetBlock(wanted, index - index % Block) == 0)
+      {
+        index += Block - 1;
+        continue;
+      }
       const Ray& ray = rays[(wanted >> index & 1) != 0 ? index : any];
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -57,30 +62,42 @@ public:
     }
   }
 
-  /// See MeshKernel::SetRays.
-  Mask Set(Mask& alone)
+  /// Returns the rays that may meet the mesh.
+  Mask Set()
   {
     Mask meeting = 0;
-    for (int first = 0; first < Size; first += Width)
-    {
-      meeting |= this->Clip(first) << first;
-    }
+    ForEachVector(this->Wanted, [&](int first) { meeting |= this->Clip(first) << first; });
     meeting &= this->Wanted;
-    if (meeting == 0)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      return 0;
+      this->Packet.Along[axis] = 0;
+      this->Packet.Backward[axis] = 0;
     }
-    this->SetCommon(GetLowest(meeting));
-    Mask alike = 0;
-    for (int first = 0; first < Size; first += Width)
-    {
-      alike |= this->Complete(first) << first;
-    }
-    alone = meeting & ~alike;
-    return meeting & alike;
+    ForEachVector(meeting, [&](int first) { this->Complete(first); });
+    return meeting;
   }
 
 private:
+  static constexpr int Block = MeshPacket::Block;
+
+  /// The rays of a block. All of its lanes are set, or none.
+  static Mask GetBlock(Mask rays, int first) { return rays >> first & ((Mask{ 1 } << Block) - 1); }
+
+  /// Calls `visit(first)` for the vectors of blocks with any of `rays`.
+  template <class Visit>
+  static HWY_INLINE void ForEachVector(Mask rays, const Visit& visit)
+  {
+    for (int block = 0; block < Size; block += Block)
+    {
+      if (GetBlock(rays, block) != 0)
+      {
+        for (int first = block; first < block + Block; first += Width)
+        {
+          visit(first);
+        }
+      }
+    }
+  }
   static Mask GetBits(Lanes lanes) { return static_cast<Mask>(GetMaskBits(Tag(), lanes)); }
 
   static void StoreFloats(Vector value, float* to)
@@ -160,72 +177,66 @@ private:
     return GetBits(hn::And(meets, hn::Le(enter, leave)));
   }
 
-  /// Sets the properties that all rays of the packet must share with this one.
-  void SetCommon(int index)
-  {
-    int largest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Packet.Backward[axis] = this->Inverse[axis][index] < 0.0;
-      largest = std::abs(this->Direction[axis][index]) > std::abs(this->Direction[largest][index])
-        ? axis
-        : largest;
-    }
-    TriangleRay ray;
-    ray.SetAxes(largest, this->Packet.Backward[largest]);
-    for (int place = 0; place < 3; ++place)
-    {
-      this->Packet.Axes[place] = ray.Axes[place];
-    }
-  }
-
-  /// Returns the rays that have that in common, the rest of which is stored.
-  Mask Complete(int first)
+  /// Sets the rest of the packet's numbers.
+  void Complete(int first)
   {
     const Tag tag;
     MeshPacket& packet = this->Packet;
-    const int largest = packet.Axes[2];
-    const Vector most = hn::Abs(hn::Load(tag, this->Direction[largest] + first));
-    const Vector scale = hn::Load(tag, this->Inverse[largest] + first);
     const Vector enter = hn::Load(tag, packet.StartT + first);
     const Vector longest = hn::Load(tag, packet.BoxesPerT + first);
     const Vector margin = hn::Load(tag, this->BoxMargin + first);
-    Lanes alike = hn::Eq(enter, enter);
+    Vector origin[3];
+    Vector direction[3];
+    Vector inverse[3];
+    Lanes backward[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const Vector origin = hn::Load(tag, this->Origin[axis] + first);
-      const Vector direction = hn::Load(tag, this->Direction[axis] + first);
-      const Vector inverse = hn::Load(tag, this->Inverse[axis] + first);
-      const Lanes backward = hn::Lt(inverse, hn::Zero(tag));
-      alike = packet.Backward[axis] ? hn::And(alike, backward) : hn::AndNot(backward, alike);
-      // Among axes along which a ray moves equally far, the first one is taken.
-      const Lanes less =
-        axis < largest ? hn::Lt(hn::Abs(direction), most) : hn::Le(hn::Abs(direction), most);
-      alike = hn::And(alike, less);
-
-      StoreFloats(hn::Add(origin, hn::Mul(enter, direction)), packet.Start[axis] + first);
-      const Vector unit = hn::Mul(inverse, longest);
+      origin[axis] = hn::Load(tag, this->Origin[axis] + first);
+      direction[axis] = hn::Load(tag, this->Direction[axis] + first);
+      inverse[axis] = hn::Load(tag, this->Inverse[axis] + first);
+      backward[axis] = hn::Lt(inverse[axis], hn::Zero(tag));
+      packet.Backward[axis] |= GetBits(backward[axis]) << first;
+      StoreFloats(
+        hn::Add(origin[axis], hn::Mul(enter, direction[axis])), packet.Start[axis] + first);
+      const Vector unit = hn::Mul(inverse[axis], longest);
       const Vector size = hn::Min(hn::Abs(unit), hn::Set(tag, BoxRay::LargestInverse));
       StoreFloats(hn::CopySign(size, unit), packet.Inverse[axis] + first);
       StoreFloats(hn::Mul(margin, size), packet.Margin[axis] + first);
     }
-    for (int place = 0; place < 3; ++place)
+    // Among axes along which a ray moves equally far, the first one is taken.
+    const Lanes isSecond = hn::Gt(hn::Abs(direction[1]), hn::Abs(direction[0]));
+    const Lanes isThird =
+      hn::Gt(hn::Abs(direction[2]), hn::Max(hn::Abs(direction[0]), hn::Abs(direction[1])));
+    const Mask second = GetBits(isSecond);
+    const Mask third = GetBits(isThird);
+    constexpr Mask all = (Mask{ 1 } << Width) - 1;
+    packet.Along[0] |= (all & ~second & ~third) << first;
+    packet.Along[1] |= (second & ~third) << first;
+    packet.Along[2] |= third << first;
+    // The values of the axis that is `next` after the largest one.
+    const auto choose = [&](const Vector values[3], int next)
     {
-      const int axis = packet.Axes[place];
-      const Vector direction = hn::Load(tag, this->Direction[axis] + first);
-      hn::Store(hn::Load(tag, this->Origin[axis] + first), tag, packet.Origin[place] + first);
-      hn::Store(place < 2 ? hn::Mul(direction, scale) : scale, tag, packet.Shear[place] + first);
-    }
-    for (int next = 0; next < 2; ++next)
-    {
-      const Vector direction = hn::Load(tag, this->Direction[(largest + 1 + next) % 3] + first);
-      StoreFloats(hn::Mul(direction, scale), packet.FilterShear[next] + first);
-    }
+      return hn::IfThenElse(isThird, values[(2 + next) % 3],
+        hn::IfThenElse(isSecond, values[(1 + next) % 3], values[next]));
+    };
+    const Vector scale = choose(inverse, 0);
+    const Lanes turns = hn::Lt(scale, hn::Zero(tag));
+    const Vector shearX = hn::Mul(choose(direction, 1), scale);
+    const Vector shearY = hn::Mul(choose(direction, 2), scale);
+    StoreFloats(shearX, packet.FilterShear[0] + first);
+    StoreFloats(shearY, packet.FilterShear[1] + first);
+    const Vector originX = choose(origin, 1);
+    const Vector originY = choose(origin, 2);
+    hn::Store(hn::IfThenElse(turns, originY, originX), tag, packet.Origin[0] + first);
+    hn::Store(hn::IfThenElse(turns, originX, originY), tag, packet.Origin[1] + first);
+    hn::Store(choose(origin, 0), tag, packet.Origin[2] + first);
+    hn::Store(hn::IfThenElse(turns, shearY, shearX), tag, packet.Shear[0] + first);
+    hn::Store(hn::IfThenElse(turns, shearX, shearY), tag, packet.Shear[1] + first);
+    hn::Store(scale, tag, packet.Shear[2] + first);
     StoreFloats(margin, packet.Uncertainty + first);
     const Vector place = hn::Mul(hn::Sub(hn::Load(tag, this->Leave + first), enter), longest);
     const Vector room = hn::Mul(hn::Abs(place), hn::Set(tag, ShearedRay::PlacePart));
     StoreFloats(hn::Add(hn::Add(place, room), margin), packet.BoxesEnd + first);
-    return GetBits(alike);
   }
 
   MeshPacket& Packet;

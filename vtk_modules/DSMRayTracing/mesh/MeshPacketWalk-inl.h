@@ -8,16 +8,14 @@
 #endif
 
 #include "DSMBricks/accel/WideBvhNode.h"
-#include "DSMRayTracing/base/MaskBits-inl.h"
-#include "DSMRayTracing/mesh/MeshPacket.h"
+#include "DSMBricks/base/PrefetchLine.h"
+#include "DSMRayTracing/mesh/MeshPacketBoxes-inl.h"
 #include "DSMRayTracing/ray/WideBvhTraversal.h"
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace rt
@@ -26,202 +24,237 @@ namespace HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// TraverseWideBvh for a packet: a node is visited once for all rays that meet its box before they end. D: vectors
-/// of rays. A walk of its own: functions for an instruction set cannot be inlined into that template, which is
-/// compiled for every processor.
+/// TraverseWideBvh for a packet. D: vectors of rays. A node is visited once for all rays that meet its box before they
+/// end, as long as these are many. Few rays each continue alone, with the children of a node in a vector. They take
+/// steps in turn, so that the memory that one of them asks for arrives while the others are at work. A walk of its own:
+/// functions for an instruction set cannot be inlined into that template, which is compiled for every processor.
 template <class D>
 class MeshPacketWalk
 {
 public:
-  using Vector = hn::Vec<D>;
   using Mask = MeshPacket::Mask;
   static constexpr int Size = MeshPacket::Size;
-  static constexpr int Width = static_cast<int>(hn::MaxLanes(D()));
 
   explicit MeshPacketWalk(const MeshPacket& packet)
     : Packet(packet)
+    , Boxes(packet)
   {
   }
 
-  /// Calls `visit(reference, rays)` for leaves, about front to back; it may lower packet.BoxesEnd; before,
-  /// and ahead of time, `prepare(reference)`.
-  template <class Reference, class Prepare, class Visit>
+  /// Takes `rays` through a hierarchy, up to `Few` of them alone. `search` has
+  /// - void Visit(leaf, rays): leaves are visited about front to back; it may lower packet.BoxesEnd;
+  /// - void Fetch(leaf): asks for memory that the visit will need, ahead of time;
+  /// - void FetchMore(leaf): asks for more of it, later, ahead of a visit of one ray.
+  /// The last two must be inlined; see PrefetchLine.
+  template <int Few, class Reference, class Search>
   HWY_INLINE void Traverse(
-    const bricks::WideBvhNode<Reference>* nodes, Mask rays, Prepare&& prepare, Visit&& visit) const
+    const bricks::WideBvhNode<Reference>* nodes, Mask rays, Search& search) const
   {
     using Node = bricks::WideBvhNode<Reference>;
-    HWY_ALIGN float enters[LargestWideBvhStack][Size];
+    Stack<Reference> stack;
+    stack.Push(0, rays);
+    LoneRays<Reference> lone;
+    while (stack.Count > 0)
+    {
+      if (Few > 0 && stack.GetTopCount() <= Few)
+      {
+        stack.template MoveTo<Few>(lone);
+        while (lone.Rays != 0)
+        {
+          for (Mask left = lone.Rays; left != 0; left &= left - 1)
+          {
+            this->Step(nodes, GetLowest(left), lone, search);
+          }
+        }
+        continue;
+      }
+      --stack.Count;
+      const Reference child = stack.Entries[stack.Count].Child;
+      rays = this->Boxes.FindOpen(stack.Enters[stack.Count], stack.Entries[stack.Count].Rays);
+      if (rays == 0)
+      {
+        continue;
+      }
+      if (child & Node::LeafBit)
+      {
+        search.Visit(child, rays);
+        continue;
+      }
+      const Node& node = nodes[child];
+      typename MeshPacketBoxes<D>::Children met;
+      this->Boxes.FindChildren(node, rays, met);
+      const int bottom = stack.Count;
+      for (int slot = 0; slot < node.Children; ++slot)
+      {
+        if (met.Rays[slot] != 0)
+        {
+          Fetch(nodes, node.References[slot], search);
+          stack.Insert(bottom, node.References[slot], met.Rays[slot], met.Enter[slot]);
+        }
+      }
+    }
+  }
+
+private:
+  /// The children that wait for a ray that continues alone: the nearest is on top.
+  template <class Reference>
+  struct LoneRays
+  {
+    struct Entry
+    {
+      float Enter;
+      Reference Child;
+    };
+    Entry Entries[Size][LargestWideBvhStack];
+    int Count[Size] = {};
+    Mask Rays = 0; ///< for which any wait
+    /// Leaves that were taken off the stack, and are visited in the ray's next turn; those that have one.
+    Entry Leaf[Size];
+    Mask HaveLeaf = 0;
+  };
+
+  /// The children that wait for several rays, and where these enter them; the nearest is on top.
+  template <class Reference>
+  struct Stack
+  {
     struct Entry
     {
       Reference Child;
       Mask Rays;
     };
-    Entry stack[LargestWideBvhStack];
-    int size = 0;
-    Reference child = 0;
-    while (true)
+    HWY_ALIGN float Enters[LargestWideBvhStack][Size];
+    Entry Entries[LargestWideBvhStack];
+    int Count = 0;
+
+    int GetTopCount() const { return GetCount(this->Entries[this->Count - 1].Rays); }
+
+    /// Adds a child that rays enter at once.
+    HWY_INLINE void Push(Reference child, Mask rays)
     {
-      if (child & Node::LeafBit)
+      std::fill_n(this->Enters[this->Count], Size, 0.0f);
+      this->Entries[this->Count++] = { child, rays };
+    }
+
+    /// Adds a child above `bottom`, by where its first ray enters it.
+    HWY_INLINE void Insert(int bottom, Reference child, Mask rays, const float* enter)
+    {
+      const float first = enter[GetLowest(rays)];
+      int place = this->Count++;
+      for (; place > bottom &&
+           this->Enters[place - 1][GetLowest(this->Entries[place - 1].Rays)] < first;
+           --place)
       {
-        visit(child, rays);
+        Copy(this->Enters[place - 1], this->Enters[place]);
+        this->Entries[place] = this->Entries[place - 1];
       }
-      else
+      Copy(enter, this->Enters[place]);
+      this->Entries[place] = { child, rays };
+    }
+
+    /// Moves the children on top that `Few` rays or fewer meet.
+    template <int Few>
+    HWY_INLINE void MoveTo(LoneRays<Reference>& lone)
+    {
+      const int end = this->Count;
+      while (this->Count > 0 && this->GetTopCount() <= Few)
       {
-        const Node& node = nodes[child];
-        Children met;
-        this->FindChildren(node, rays, met);
-        // The nearest child goes to the top, by where its first ray enters it.
-        const int bottom = size;
-        for (int slot = 0; slot < node.Children; ++slot)
+        --this->Count;
+      }
+      for (int place = this->Count; place < end; ++place)
+      {
+        const Entry& entry = this->Entries[place];
+        lone.Rays |= entry.Rays;
+        for (Mask left = entry.Rays; left != 0; left &= left - 1)
         {
-          if (met.Rays[slot] == 0)
-          {
-            continue;
-          }
-          const Reference reference = node.References[slot];
-          if (reference & Node::LeafBit)
-          {
-            prepare(reference);
-          }
-          else
-          {
-            Fetch(&nodes[reference], sizeof(Node));
-          }
-          const int lane = GetLowest(met.Rays[slot]);
-          const float enter = met.Enter[slot][lane];
-          int place = size++;
-          for (; place > bottom && enters[place - 1][GetLowest(stack[place - 1].Rays)] < enter;
-               --place)
-          {
-            Copy(enters[place - 1], enters[place]);
-            stack[place] = stack[place - 1];
-          }
-          Copy(met.Enter[slot], enters[place]);
-          stack[place] = { reference, met.Rays[slot] };
+          const int index = GetLowest(left);
+          lone.Entries[index][lone.Count[index]++] = { this->Enters[place][index], entry.Child };
         }
       }
-      do
-      {
-        if (size == 0)
-        {
-          return;
-        }
-        --size;
-        rays = this->FindOpen(enters[size], stack[size].Rays);
-      } while (rays == 0);
-      child = stack[size].Child;
     }
-  }
 
-  /// Asks for memory that will be read soon.
-  static HWY_INLINE void Fetch(const void* start, std::size_t bytes)
-  {
-    constexpr std::size_t line = 64;
-    const auto* const first = static_cast<const char*>(start);
-    for (const char* at = first; at < first + bytes; at += line)
+  private:
+    static HWY_INLINE void Copy(const float* from, float* to)
     {
-      hwy::Prefetch(at);
+      for (int first = 0; first < Size; first += static_cast<int>(hn::MaxLanes(D())))
+      {
+        hn::Store(hn::Load(D(), from + first), D(), to + first);
+      }
     }
-  }
-
-private:
-  struct Children
-  {
-    HWY_ALIGN float Enter[bricks::WideBvhWidth][Size];
-    Mask Rays[bricks::WideBvhWidth];
   };
 
-  static Mask GetBits(hn::Mask<D> mask) { return static_cast<Mask>(GetMaskBits(D(), mask)); }
-  static constexpr Mask GetLanes(int first) { return ((Mask{ 1 } << Width) - 1) << first; }
-
-  static HWY_INLINE void Copy(const float* from, float* to)
+  /// Asks for a child, which will be read soon.
+  template <class Reference, class Search>
+  static HWY_INLINE void Fetch(
+    const bricks::WideBvhNode<Reference>* nodes, Reference child, const Search& search)
   {
-    for (int first = 0; first < Size; first += Width)
+    if (child & bricks::WideBvhNode<Reference>::LeafBit)
     {
-      hn::Store(hn::Load(D(), from + first), D(), to + first);
+      search.Fetch(child);
+      return;
+    }
+    constexpr std::size_t line = 64;
+    const auto* const first = reinterpret_cast<const char*>(&nodes[child]);
+    for (std::size_t at = 0; at < sizeof(nodes[child]); at += line)
+    {
+      bricks::PrefetchLine(first + at);
     }
   }
 
-  /// Returns the subset of `rays` that have not ended where they enter.
-  HWY_INLINE Mask FindOpen(const float* enter, Mask rays) const
+  /// Takes a turn of a ray that continues alone.
+  template <class Reference, class Search>
+  HWY_INLINE void Step(const bricks::WideBvhNode<Reference>* nodes, int index,
+    LoneRays<Reference>& lone, Search& search) const
   {
-    const D tag;
-    Mask open = 0;
-    for (int first = 0; first < Size; first += Width)
+    using Node = bricks::WideBvhNode<Reference>;
+    const Mask bit = GetBit(index);
+    if ((lone.HaveLeaf & bit) != 0)
     {
-      open |=
-        GetBits(hn::Le(hn::Load(tag, enter + first), hn::Load(tag, this->Packet.BoxesEnd + first)))
-        << first;
-    }
-    return open & rays;
-  }
-
-  /// BoxRay::FindChildren.
-  template <class Reference>
-  HWY_INLINE void FindChildren(
-    const bricks::WideBvhNode<Reference>& node, Mask rays, Children& met) const
-  {
-    const D tag;
-    float planes[6 * bricks::WideBvhWidth];
-    for (int plane = 0; plane < 6 * bricks::WideBvhWidth; ++plane)
-    {
-      planes[plane] = node.Bounds[plane];
-    }
-    float scale[3];
-    const float* nearest[3];
-    const float* farthest[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const std::uint32_t bits = std::uint32_t{ node.Exponent[axis] } << 23;
-      std::memcpy(&scale[axis], &bits, sizeof(bits));
-      nearest[axis] =
-        planes + bricks::WideBvhWidth * (this->Packet.Backward[axis] ? 3 + axis : axis);
-      farthest[axis] =
-        planes + bricks::WideBvhWidth * (this->Packet.Backward[axis] ? axis : 3 + axis);
-    }
-    for (Mask& child : met.Rays)
-    {
-      child = 0;
-    }
-    for (int first = 0; first < Size; first += Width)
-    {
-      if ((rays & GetLanes(first)) == 0)
+      lone.HaveLeaf &= ~bit;
+      if (lone.Leaf[index].Enter <= this->Packet.BoxesEnd[index])
       {
-        continue;
-      }
-      Vector step[3];
-      Vector nearStart[3];
-      Vector farStart[3];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const Vector inverse = hn::Load(tag, this->Packet.Inverse[axis] + first);
-        const Vector margin = hn::Load(tag, this->Packet.Margin[axis] + first);
-        const Vector start = hn::Mul(
-          hn::Sub(hn::Set(tag, node.Origin[axis]), hn::Load(tag, this->Packet.Start[axis] + first)),
-          inverse);
-        step[axis] = hn::Mul(hn::Set(tag, scale[axis]), inverse);
-        nearStart[axis] = hn::Sub(start, margin);
-        farStart[axis] = hn::Add(start, margin);
-      }
-      const Vector last = hn::Load(tag, this->Packet.BoxesEnd + first);
-      for (int child = 0; child < node.Children; ++child)
-      {
-        Vector enter = hn::Zero(tag);
-        Vector leave = last;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          enter = hn::Max(
-            hn::MulAdd(hn::Set(tag, nearest[axis][child]), step[axis], nearStart[axis]), enter);
-          leave = hn::Min(
-            hn::MulAdd(hn::Set(tag, farthest[axis][child]), step[axis], farStart[axis]), leave);
-        }
-        hn::Store(enter, tag, met.Enter[child] + first);
-        met.Rays[child] |= GetBits(hn::Le(enter, leave)) << first & rays;
+        search.Visit(lone.Leaf[index].Child, bit);
       }
     }
+    auto* const entries = lone.Entries[index];
+    int& count = lone.Count[index];
+    const float end = this->Packet.BoxesEnd[index];
+    while (count > 0 && !(entries[count - 1].Enter <= end))
+    {
+      --count;
+    }
+    if (count == 0)
+    {
+      lone.Rays &= ~bit;
+      return;
+    }
+    const auto next = entries[--count];
+    if (next.Child & Node::LeafBit)
+    {
+      search.FetchMore(next.Child);
+      lone.Leaf[index] = next;
+      lone.HaveLeaf |= bit;
+      return;
+    }
+    const Node& node = nodes[next.Child];
+    HWY_ALIGN float enter[bricks::WideBvhWidth];
+    const int bottom = count;
+    int size = count;
+    for (unsigned met = this->Boxes.FindChildrenOfOne(node, index, enter); met != 0; met &= met - 1)
+    {
+      const int slot = GetLowest(met);
+      Fetch(nodes, node.References[slot], search);
+      int place = size++;
+      for (; place > bottom && entries[place - 1].Enter < enter[slot]; --place)
+      {
+        entries[place] = entries[place - 1];
+      }
+      entries[place] = { enter[slot], node.References[slot] };
+    }
+    count = size;
   }
 
   const MeshPacket& Packet;
+  MeshPacketBoxes<D> Boxes;
 };
 
 } // namespace HWY_NAMESPACE

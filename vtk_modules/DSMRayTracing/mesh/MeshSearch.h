@@ -32,9 +32,9 @@ public:
   /// The first hit in [ray.Min, ray.Max]. May wait for bricks.
   bool Intersect(const MeshInstance& instance, const Ray& ray, MeshHit& hit) const;
 
-  /// Intersect for those of a batch of rays that are `wanted`, with the same results. Returns those that
-  /// hit something, and calls `take(index, hit)` for each of them. A brick is acquired once for all of a
-  /// packet that meet it.
+  /// Intersect for those of a batch of rays that are `wanted`, with the same results. Returns those that hit something,
+  /// and calls `take(index, t)` for each of them, which returns where to write the hit, or null if it is not needed. A
+  /// brick is acquired once for all rays that meet it.
   template <class Take>
   RayMask Intersect(
     const MeshInstance& instance, const Ray* rays, RayMask wanted, const Take& take) const;
@@ -47,24 +47,16 @@ public:
   RayMask FindOccluded(const MeshInstance& instance, const Ray* rays, RayMask wanted) const;
 
 private:
+  /// Fewer rays go one by one, which takes less time.
+  static constexpr int LeastPacket = 4;
+
   class PacketVisitor;
   class OcclusionVisitor;
 
-  /// Searches the rays of a batch packet by packet: calls `search(rays, some, first)` for the `wanted` ones of
-  /// MeshPacket::Size rays at a time, from `first` on; it returns those that have found something, as this does.
-  template <class Search>
-  static RayMask SearchPackets(const Ray* rays, RayMask wanted, const Search& search);
-
-  /// Takes those of the `wanted` rays that fit into a packet through the mesh; returns the others.
+  /// Takes the `wanted` rays through the bricks of the mesh.
   template <class Visitor>
-  MeshPacket::Mask VisitBricks(
-    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, Visitor& visitor) const;
-
-  template <class Take>
-  MeshPacket::Mask IntersectPacket(
-    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, const Take& take) const;
-  MeshPacket::Mask FindOccludedInPacket(
-    const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const;
+  void VisitBricks(
+    const MeshInstance& instance, const Ray* rays, RayMask wanted, Visitor& visitor) const;
 
   Store& Blocks;
   typename Store::Worker& Self;

@@ -71,12 +71,12 @@ public:
   {
   }
 
-  void Visit(std::uint32_t number, MeshPacket::Mask rays) override
+  void Visit(std::uint32_t number, RayMask rays) override
   {
     const typename Store::Pin pin =
       this->Search.Blocks.Acquire(this->Search.Self, *this->Mesh.Segment, number);
     const bricks::TriangleBrick brick(pin.GetData());
-    MeshPacket::Mask better = this->Search.Kernel.SearchBrick(this->Packet, rays, brick, number);
+    RayMask better = this->Search.Kernel.SearchBrick(this->Packet, rays, brick, number);
     this->Found |= better;
     for (; better != 0; better &= better - 1)
     {
@@ -86,7 +86,7 @@ public:
   }
 
   MeshPacket Packet;
-  MeshPacket::Mask Found = 0;
+  RayMask Found = 0;
   TriangleAttributes Attributes[MeshPacket::Size];
 
 private:
@@ -95,19 +95,20 @@ private:
 };
 
 template <class Store>
-template <class Search>
-RayMask MeshSearch<Store>::SearchPackets(const Ray* rays, RayMask wanted, const Search& search)
+template <class Visitor>
+void MeshSearch<Store>::VisitBricks(
+  const MeshInstance& instance, const Ray* rays, RayMask wanted, Visitor& visitor) const
 {
-  RayMask found = 0;
-  for (int first = 0; first < MaxRays; first += MeshPacket::Size)
+  const bricks::TriangleMesh& mesh = instance.GetMesh();
+  if (mesh.Bricks.IsEmpty())
   {
-    const MeshPacket::Mask some = GetPart(wanted, first, MeshPacket::Size);
-    if (some != 0)
-    {
-      found |= RayMask{ search(rays + first, some, first) } << first;
-    }
+    return;
   }
-  return found;
+  const RayMask meeting = this->Kernel.SetRays(visitor.Packet, instance, rays, wanted);
+  if (meeting != 0)
+  {
+    this->Kernel.FindBricks(visitor.Packet, meeting, mesh.Bricks, visitor);
+  }
 }
 
 template <class Store>
@@ -115,66 +116,32 @@ template <class Take>
 RayMask MeshSearch<Store>::Intersect(
   const MeshInstance& instance, const Ray* rays, RayMask wanted, const Take& take) const
 {
-  return SearchPackets(rays, wanted,
-    [&](const Ray* packet, MeshPacket::Mask some, int first)
-    {
-      return this->IntersectPacket(
-        instance, packet, some, [&](int index, const MeshHit& hit) { take(first + index, hit); });
-    });
-}
-
-template <class Store>
-template <class Visitor>
-MeshPacket::Mask MeshSearch<Store>::VisitBricks(
-  const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, Visitor& visitor) const
-{
-  const bricks::TriangleMesh& mesh = instance.GetMesh();
-  if (mesh.Bricks.IsEmpty())
+  if (GetCount(wanted) < LeastPacket)
   {
-    return 0;
-  }
-  MeshPacket::Mask alone = 0;
-  const MeshPacket::Mask together =
-    this->Kernel.SetRays(visitor.Packet, instance, rays, wanted, alone);
-  if (together != 0)
-  {
-    this->Kernel.FindBricks(visitor.Packet, together, mesh.Bricks, visitor);
-  }
-  return alone;
-}
-
-template <class Store>
-template <class Take>
-MeshPacket::Mask MeshSearch<Store>::IntersectPacket(
-  const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted, const Take& take) const
-{
-  MeshPacket::Mask alone = wanted;
-  MeshPacket::Mask found = 0;
-  if (GetCount(wanted) > 1)
-  {
-    PacketVisitor visitor(*this, instance.GetMesh());
-    alone = this->VisitBricks(instance, rays, wanted, visitor);
-    found = visitor.Found;
-    ForEachRay(found,
+    return FindRays(wanted,
       [&](int index)
       {
         MeshHit hit;
-        hit.Set(
-          instance, rays[index], visitor.Packet.Nearest[index].Hit, visitor.Attributes[index]);
-        take(index, hit);
+        const bool isHit = this->Intersect(instance, rays[index], hit);
+        if (MeshHit* const place = isHit ? take(index, hit.T) : nullptr)
+        {
+          *place = hit;
+        }
+        return isHit;
       });
   }
-  ForEachRay(alone,
+  PacketVisitor visitor(*this, instance.GetMesh());
+  this->VisitBricks(instance, rays, wanted, visitor);
+  ForEachRay(visitor.Found,
     [&](int index)
     {
-      MeshHit hit;
-      if (this->Intersect(instance, rays[index], hit))
+      const TriangleHit& triangle = visitor.Packet.Nearest[index].Hit;
+      if (MeshHit* const hit = take(index, triangle.T))
       {
-        take(index, hit);
-        found |= MeshPacket::Mask{ 1 } << index;
+        hit->Set(instance, rays[index], triangle, visitor.Attributes[index]);
       }
     });
-  return found;
+  return visitor.Found;
 }
 
 /// Searches the bricks that a packet meets for any hit.
@@ -188,7 +155,7 @@ public:
   {
   }
 
-  void Visit(std::uint32_t number, MeshPacket::Mask rays) override
+  void Visit(std::uint32_t number, RayMask rays) override
   {
     const typename Store::Pin pin =
       this->Search.Blocks.Acquire(this->Search.Self, *this->Mesh.Segment, number);
@@ -197,7 +164,7 @@ public:
   }
 
   MeshPacket Packet;
-  MeshPacket::Mask Found = 0;
+  RayMask Found = 0;
 
 private:
   const MeshSearch& Search;
@@ -208,26 +175,13 @@ template <class Store>
 RayMask MeshSearch<Store>::FindOccluded(
   const MeshInstance& instance, const Ray* rays, RayMask wanted) const
 {
-  return SearchPackets(rays, wanted,
-    [&](const Ray* packet, MeshPacket::Mask some, int)
-    { return this->FindOccludedInPacket(instance, packet, some); });
-}
-
-template <class Store>
-MeshPacket::Mask MeshSearch<Store>::FindOccludedInPacket(
-  const MeshInstance& instance, const Ray* rays, MeshPacket::Mask wanted) const
-{
-  MeshPacket::Mask alone = wanted;
-  MeshPacket::Mask found = 0;
-  if (GetCount(wanted) > 1)
+  if (GetCount(wanted) < LeastPacket)
   {
-    OcclusionVisitor visitor(*this, instance.GetMesh());
-    alone = this->VisitBricks(instance, rays, wanted, visitor);
-    found = visitor.Found;
+    return FindRays(wanted, [&](int index) { return this->IsOccluded(instance, rays[index]); });
   }
-  return found |
-    static_cast<MeshPacket::Mask>(
-      FindRays(alone, [&](int index) { return this->IsOccluded(instance, rays[index]); }));
+  OcclusionVisitor visitor(*this, instance.GetMesh());
+  this->VisitBricks(instance, rays, wanted, visitor);
+  return visitor.Found;
 }
 
 } // namespace rt

@@ -37,8 +37,8 @@ public:
 
   void FindNext(Ray* rays, RayMask wanted, ObjectBeam*, ObjectHit* nearest) const override
   {
-    const auto take = [&](int index, const MeshHit& hit)
-    { nearest[index].Take(*this, hit, rays[index]); };
+    const auto take = [&](int index, double t)
+    { return nearest[index].Open<MeshHit>(*this, t, rays[index]); };
     this->Object.Clipping.SearchParts(rays, wanted,
       [&](const Ray* parts, RayMask some)
       { return this->Search.Intersect(*this->Object.Instance, parts, some, take); });

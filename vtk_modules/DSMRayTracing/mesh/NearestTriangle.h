@@ -45,8 +45,13 @@ struct NearestTriangle
     TriangleHit hit;
     hit.Brick = number;
     hit.Triangle = triangle;
-    if (!Meets(ray, culling, brick, triangle, hit) ||
-      (this->Found && hit.T == this->Hit.T && !ComesFirst(hit, this->Hit)))
+    return Meets(ray, culling, brick, triangle, hit) && this->Take(hit);
+  }
+
+  /// The same for an intersection up to ray.Max.
+  bool Take(const TriangleHit& hit)
+  {
+    if (this->Found && hit.T == this->Hit.T && !ComesFirst(hit, this->Hit))
     {
       return false;
     }

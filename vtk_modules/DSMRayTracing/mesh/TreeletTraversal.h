@@ -96,7 +96,9 @@ private:
   template <int Axis, class Take>
   void FindCandidates(const ShearedRay& ray, Take&& take) const
   {
-    const FilterRay line(ray.Boxes.Origin, ray.FilterShear, ray.Uncertainty, this->Brick);
+    const FilterRay line{ { ray.Boxes.Origin[0], ray.Boxes.Origin[1], ray.Boxes.Origin[2] },
+      { ray.FilterShear[0], ray.FilterShear[1] },
+      FilterRay::GetError(ray.Uncertainty, this->Brick) };
     TraverseWideBvh(this->Brick.GetNodes(), ChildrenOnRay(ray.Boxes, ray.BoxesEnd),
       [&](std::uint16_t reference)
       {

@@ -18,16 +18,12 @@ struct FilterRay
   float Shear[2];
   float Error;
 
-  FilterRay() = default;
   /// `uncertainty`: see ShearedRay.
-  FilterRay(const float origin[3], const float shear[2], float uncertainty,
-    const bricks::TriangleBrick& brick)
-    : Origin{ origin[0], origin[1], origin[2] }
-    , Shear{ shear[0], shear[1] }
+  static float GetError(float uncertainty, const bricks::TriangleBrick& brick)
   {
     const float d = uncertainty;
     const float e = brick.GetHeader().LargestExtent;
-    this->Error = 20.0f * d * e + 10.0f * d * d + 0x1p-19f * e * e;
+    return 20.0f * d * e + 10.0f * d * d + 0x1p-19f * e * e;
   }
 };
 
