@@ -14,7 +14,7 @@ packages=(
   libopenmpi-dev openmpi-bin
   libglm-dev libhwy-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   pkg-config libhdf5-dev zlib1g-dev libdeflate-dev libblosc-dev libzstd-dev
-  liblz4-dev liblzma-dev libbz2-dev
+  liblz4-dev liblzma-dev libbz2-dev libcurl4-openssl-dev
   libx11-dev libgl-dev libopengl-dev libglew-dev libpng-dev libpython3-dev
   xvfb xauth libgl1-mesa-dri
 )

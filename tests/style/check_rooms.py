@@ -34,7 +34,7 @@ ROOMS = {
         "frame",
     ],
     "vtk_modules/DSMVolumeFiles": [
-        "base", "codec", "format", "plain", "hdf", "zarr", "open", "cache", "range", "write",
+        "base", "codec", "format", "plain", "hdf", "remote", "zarr", "open", "cache", "range", "write",
     ],
     "vtk_modules/RenderingDSM": ["base", "options", "ranks", "file", "data", "part", "frame", "scene", "mapper"],
     "plugin/Representations": [

@@ -34,6 +34,16 @@ public:
   virtual void Read(const std::vector<Piece>& pieces, std::byte* out) const = 0;
   /// The system may read pieces, in any order, to its own cache already; does not wait for it.
   virtual void Prefetch(std::vector<Piece> pieces) const = 0;
+  /// What was read cannot be right: copies of it that are kept elsewhere are not to be used again.
+  virtual void Doubt() const {}
+};
+
+/// Bytes of one file, or of one key of a store.
+class StampedSource : public ByteSource
+{
+public:
+  /// Differs, for all practical purposes, when other bytes are there.
+  virtual std::uint64_t GetStamp() const = 0;
 };
 
 } // namespace vol

@@ -14,7 +14,7 @@ namespace vol
 {
 
 /// An open file that is read at given places. Any thread.
-class PositionedFile final : public ByteSource
+class PositionedFile final : public StampedSource
 {
 public:
   /// Throws dsm::Error when it cannot be opened; WouldWait (WithoutWaiting), as a disk has to be asked.
@@ -27,7 +27,7 @@ public:
   std::uint64_t GetBytes() const override { return this->Bytes; }
   /// Differs, for all practical purposes, when another file is there, or this one was written to: of
   /// inode, size and time of change, when it was opened. The same on all hosts that share a file system.
-  std::uint64_t GetStamp() const { return this->Stamp; }
+  std::uint64_t GetStamp() const override { return this->Stamp; }
   /// Returns the stamp of the file that is at a path now; 0 if there is none.
   static std::uint64_t FindStampOf(const std::string& path);
   /// Returns whether the file is unchanged since it was opened.

@@ -127,6 +127,7 @@ void StoredFile::ReadStored(
   }
   catch (const dsm::Error& error)
   {
+    place->File->Doubt();
     throw FileError(this->NamePlace(array, *place, chunk, whole), error);
   }
 }
@@ -255,6 +256,7 @@ bool StoredFile::ReadPart(std::size_t array, int step, const bricks::Index3& chu
       }
       catch (const dsm::Error& error)
       {
+        place->File->Doubt();
         throw FileError(this->NamePlace(array, *place, chunk, whole), error);
       }
     });

@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/PositionedFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/base/Url.h"
 #ifdef DSM_HAS_HDF5
 #include "DSMVolumeFiles/hdf/HdfFile.h"
 #endif
@@ -12,12 +13,13 @@
 #include "DSMVolumeFiles/plain/BareFile.h"
 #include "DSMVolumeFiles/plain/HeaderFiles.h"
 #include "DSMVolumeFiles/zarr/ZarrFile.h"
-#include "DSMVolumeFiles/zarr/ZarrGroup.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -49,14 +51,20 @@ bool HasHdfSignature(const PositionedFile& file)
 /// A file of metadata in a Zarr folder may stand for it: a dialog may have files only.
 std::string FindZarrFolder(const std::string& path)
 {
+  const bool isUrl = IsUrl(path);
   const std::filesystem::path file(path);
   const std::string name = file.filename().string();
   const bool isPart =
     name == ".zattrs" || name == ".zgroup" || name == ".zarray" || name == "zarr.json";
   std::string folder = isPart ? file.parent_path().string() : path;
-  while (folder.size() > 1 && folder.back() == '/')
+  const std::size_t least = isUrl ? path.find("://") + 4 : 1;
+  while (folder.size() > least && folder.back() == '/')
   {
     folder.pop_back();
+  }
+  if (isUrl)
+  {
+    return folder;
   }
   folder = folder.empty() || folder == "." ? std::filesystem::current_path().string() : folder;
   return MayBeZarr(folder) ? folder : std::string();
@@ -93,12 +101,33 @@ std::shared_ptr<VolumeFile> OpenHdf(const std::string& path, const OpenOptions&)
 }
 #endif
 
+/// Of what a server has, only Zarr can be read in parts; what it has there is seen when it is opened.
+std::shared_ptr<VolumeFile> OpenUrl(const std::string& url, const OpenOptions& options)
+{
+  const std::string folder = FindZarrFolder(url);
+  const std::string extension = ToLower(std::filesystem::path(folder).extension().string());
+  const char* const others[] = { ".h5", ".hdf5", ".hdf", ".vtkhdf", ".nc", ".ims", ".emd", ".nrrd",
+    ".nhdr", ".mha", ".mhd", ".raw", ".zip", ".tif", ".tiff" };
+  if (std::count(std::begin(others), std::end(others), extension) > 0)
+  {
+    throw FileError(HideCredentials(url),
+      "cannot be opened: only Zarr is read from servers. Copy the file to this computer, or write "
+      "it "
+      "as Zarr there (Python: zarr.save).");
+  }
+  return OpenZarr(folder, options);
+}
+
 /// Opens a file of one format.
 using Format = std::shared_ptr<VolumeFile> (*)(const std::string& path, const OpenOptions& options);
 
 /// Returns the format of a file; null where it is unknown.
 Format FindFormat(const std::string& path)
 {
+  if (IsUrl(path))
+  {
+    return &OpenUrl;
+  }
   if (!FindZarrFolder(path).empty())
   {
     return [](const std::string& part, const OpenOptions& options)
@@ -137,6 +166,10 @@ Format TryFindFormat(const std::string& path)
 /// As OpenVolumeFile, but that a format without levels, or datasets, does not look at the one that is wanted.
 std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOptions& options)
 {
+  if (IsUrl(path))
+  {
+    return OpenUrl(path, options);
+  }
   const PathKind kind = FindPathKind(path);
   if (kind == PathKind::Nothing)
   {
@@ -193,7 +226,7 @@ std::shared_ptr<VolumeFile> OpenGuarded(const std::string& path, const OpenOptio
   {
     why = "'" + error.path1().string() + "' cannot be read: " + error.code().message();
   }
-  throw FileError(path, "cannot be opened: " + why + ".");
+  throw FileError(HideCredentials(path), "cannot be opened: " + why + ".");
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "DSMVolumeFiles/base/CacheFolder.h"
 #include "DSMVolumeFiles/base/DurableFile.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/base/Url.h"
 
 #include <charconv>
 #include <chrono>
@@ -51,9 +52,8 @@ std::filesystem::path GetBeginning(const ArrayStep& of, const std::string& kind)
   {
     return {};
   }
-  std::error_code failure;
   const VolumeFile::StepOrigin origin = of.File->GetOrigin(of.Step);
-  const std::string path = std::filesystem::absolute(origin.Path, failure).string();
+  const std::string path = GetWholePath(origin.Path);
   const FileArray& kept = of.Get();
   const bricks::Index3& samples = kept.Grid.Samples; // another level of detail has fewer
   const std::int64_t numbers[] = { static_cast<std::int64_t>(origin.Stamp),

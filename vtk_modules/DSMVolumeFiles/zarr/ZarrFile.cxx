@@ -12,14 +12,13 @@
 #include "DSMVolumeFiles/zarr/ZarrNotes.h"
 #include "DSMVolumeFiles/zarr/ZarrParts.h"
 #include "DSMVolumeFiles/zarr/ZarrSource.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 #include "DSMVolumeFiles/zarr/ZarrVector.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <system_error>
 #include <unordered_set>
 #include <utility>
 
@@ -39,6 +38,7 @@ class ZarrFile final : public StoredFile
 public:
   ZarrFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
+    , Store(ZarrStore::Make(path, options.GoesOn))
     , Folder(path)
     , Name(options.Dataset.empty() ? options.GetArrayName(path) : options.Dataset)
     , IsPlaced(!options.HasSpacing())
@@ -53,6 +53,7 @@ public:
         this->Folder, "has invalid metadata: a member of 'multiscales' has a wrong type.");
     }
     this->Stamp = this->MakeStamp();
+    this->Store->EndOpening();
   }
 
   std::uint64_t GetTableBytes() const override
@@ -76,6 +77,22 @@ public:
     return ZarrParts::CountBytes(files, indexBytes) + listed;
   }
 
+  bool ReadPart(std::size_t array, int step, const bricks::Index3& chunk, const bricks::Box& part,
+    std::byte* out) const override
+  {
+    // A request takes longer than the rest of a chunk.
+    return (this->Store->CanList() || this->Storages[array].StoredSamples != bricks::Index3(0)) &&
+      StoredFile::ReadPart(array, step, chunk, part, out);
+  }
+
+  void Prefetch(std::size_t array, int step, const std::vector<ChunkPart>& parts) const override
+  {
+    if (this->Store->CanList())
+    {
+      StoredFile::Prefetch(array, step, parts);
+    }
+  }
+
 protected:
   std::optional<Place> FindChunk(
     std::size_t array, int step, const bricks::Index3& chunk) const override
@@ -89,7 +106,7 @@ protected:
     {
       place = this->FindInShard(source, index);
     }
-    else if (const auto file = this->FindFile(source, index))
+    else if (const auto file = this->FindFile(source, index, this->ChooseManner(array)))
     {
       place = Place{ file, 0, static_cast<std::size_t>(file->GetBytes()) };
     }
@@ -130,16 +147,7 @@ private:
       hash.Add(&packing, sizeof(packing));
       hash.Add(&this->Arrays[array].Valid, sizeof(bricks::ValidValues));
       hash.Add(source.Channel.data(), source.Channel.size() * sizeof(std::int64_t));
-      for (const char* metadata : { "/.zarray", "/zarr.json" })
-      {
-        if (FindPathKind(source.Folder + metadata) != PathKind::Nothing)
-        {
-          // The folder's, too: most programs replace chunks by others of the same name.
-          const std::uint64_t stamps[] = { PositionedFile(source.Folder + metadata).GetStamp(),
-            PositionedFile(source.Folder).GetStamp() };
-          hash.Add(stamps, sizeof(stamps));
-        }
-      }
+      this->Store->AddStamps(source.Folder, hash);
     }
     return hash.Get();
   }
@@ -148,7 +156,7 @@ private:
   /// image's first.
   void Open(const std::string& wanted, int level)
   {
-    const Json attributes = ReadZarrAttributes(this->Folder);
+    const Json attributes = ReadZarrAttributes(*this->Store, this->Folder);
     const Json& ome = ZarrGroup::FindOme(attributes);
     const Json& scales = ZarrJson::Find(ome, "multiscales");
     const bool isImage = scales.is_array() && !scales.empty();
@@ -184,9 +192,9 @@ private:
   void OpenInner(const std::string& inner, std::vector<std::string> names, int level)
   {
     const std::string folder = ZarrGroup::JoinInside(this->Folder, inner);
-    if (!MayBeZarr(folder))
+    if (!this->Store->HasMetadata(folder))
     {
-      const std::vector<std::string> more = ZarrGroup::FindInner(this->Folder);
+      const std::vector<std::string> more = this->FindInner();
       names.insert(names.end(), more.begin(), more.end());
       throw FileError(
         this->Folder, "has no dataset " + Quote(inner) + ". Valid datasets: " + ListNames(names));
@@ -208,7 +216,10 @@ private:
           ".");
     }
     const auto readNumbers = [this](const std::string& name)
-    { return ReadZarrVector(ZarrGroup::JoinInside(this->Folder, name), FileLimits::Axes); };
+    {
+      return ReadZarrVector(
+        *this->Store, ZarrGroup::JoinInside(this->Folder, name), FileLimits::Axes);
+    };
     OmeLevel found = OmeLevel::Find(this->Folder, scale, static_cast<std::size_t>(level),
       this->IsPlaced ? readNumbers : OmeLevel::ReadNumbers(), this->Warnings);
     const std::string folder = ZarrGroup::JoinInside(this->Folder, found.Array);
@@ -297,6 +308,13 @@ private:
     }
   }
 
+  /// What there is in the folder, where that is known.
+  std::vector<std::string> FindInner() const
+  {
+    return this->Store->KnowsFolders() ? ZarrGroup::FindInner(*this->Store, this->Folder)
+                                       : std::vector<std::string>();
+  }
+
   /// The folder is an array, or a group of arrays; else the first of such or of images in it is
   /// opened.
   void OpenArrays(int level)
@@ -308,26 +326,27 @@ private:
       const bool isFirst = this->Arrays.empty();
       if (isFirst || (axes.Time >= 0 && this->Times.empty()))
       {
-        const AxisNotes notes = ReadZarrNotes(folder, *data, axes);
+        const AxisNotes notes = ReadZarrNotes(*this->Store, folder, *data, axes);
         if (isFirst)
         {
           this->PlaceBy(notes, axes, data->Shape);
         }
         this->TimeBy(notes, axes, data->Shape);
       }
-      WarnOfZarrPlaces(folder, *data, this->Warnings);
+      WarnOfZarrPlaces(*this->Store, folder, *data, this->Warnings);
       this->Add(folder, data, axes,
         [&](std::int64_t channel, std::int64_t count)
         { return count == 1 ? name : name + " " + std::to_string(channel); });
     };
-    if (ReadZarrMetadata(this->Folder))
+    if (ReadZarrMetadata(*this->Store, this->Folder))
     {
       addAs(this->Folder, this->Name);
       return;
     }
     std::string refused;
-    const std::vector<std::string> names = ZarrGroup::FindArrays(this->Folder, refused);
-    const std::vector<std::string> inner = ZarrGroup::FindInner(this->Folder);
+    const std::vector<std::string> names =
+      ZarrGroup::FindArrays(*this->Store, this->Folder, refused);
+    const std::vector<std::string> inner = this->FindInner();
     if (names.empty() && inner.empty())
     {
       throw FileError(this->Folder,
@@ -352,9 +371,9 @@ private:
     }
   }
 
-  static std::shared_ptr<const ZarrMetadata> Read(const std::string& folder)
+  std::shared_ptr<const ZarrMetadata> Read(const std::string& folder) const
   {
-    std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
+    std::optional<ZarrMetadata> data = ReadZarrMetadata(*this->Store, folder);
     if (!data)
     {
       throw FileError(folder, "is not a Zarr array: it has neither .zarray nor zarr.json.");
@@ -488,7 +507,8 @@ private:
       this->Arrays.push_back(std::move(array));
       this->Storages.push_back(std::move(storage));
       auto& listing = this->Listings[folder];
-      listing = listing ? std::move(listing) : std::make_unique<ZarrListing>(folder, *data);
+      listing = listing ? std::move(listing)
+                        : std::make_unique<ZarrListing>(folder, *data, this->Store->CanList());
       this->Sources.push_back({ folder, data, axes, std::move(place), listing.get() });
     }
   }
@@ -504,24 +524,40 @@ private:
     return unique;
   }
 
+  /// Chunks are read whole unless they are shown as several.
+  ZarrStore::Manner ChooseManner(std::size_t array) const
+  {
+    const ChunkStorage& storage = this->Storages[array];
+    if (storage.StoredSamples != bricks::Index3(0))
+    {
+      return { ZarrStore::Manner::Kind::FromFirst, 1 };
+    }
+    const glm::u64vec3 chunk(this->Arrays[array].Grid.ChunkSamples);
+    const std::uint64_t bytes = MultiplyWithin(FileLimits::ChunkBytes,
+      { chunk.x, chunk.y, chunk.z, storage.Slices, this->GetStoredBytes(array) })
+                                  .value_or(FileLimits::ChunkBytes);
+    return { ZarrStore::Manner::Kind::Whole, storage.Codec.CountMostStored(bytes, 0) };
+  }
+
   /// Null: there is none.
-  std::shared_ptr<const PositionedFile> FindFile(
-    const ZarrSource& source, const ZarrSource::Index& index) const
+  std::shared_ptr<const StampedSource> FindFile(
+    const ZarrSource& source, const ZarrSource::Index& index, const ZarrStore::Manner& manner) const
   {
     const std::string path = source.Folder + "/" + source.Data->GetKey(index.data());
-    if (source.Listing->IsStillMissing(index) || FindPathKind(path) == PathKind::Nothing)
+    const bool isKnown = source.Listing->IsStillMissing(index);
+    auto file = isKnown ? nullptr : this->Store->Open(path, manner);
+    if (file)
+    {
+      this->Parts.CheckUnchanged(*file);
+      return file;
+    }
+    if (!isKnown || this->Store->CanList())
     {
       this->Parts.CheckNeverThere(path);
-      if (!MayBeZarr(source.Folder))
-      {
-        throw FileError(source.Folder, "was deleted after it was opened.");
-      }
+      this->Store->CheckThere(source.Folder);
       source.Listing->NoteMissing(index);
-      return nullptr;
     }
-    auto file = std::make_shared<const PositionedFile>(path);
-    this->Parts.CheckUnchanged(*file);
-    return file;
+    return nullptr;
   }
 
   std::optional<StoredFile::Place> FindInShard(
@@ -536,7 +572,9 @@ private:
       number =
         number * static_cast<std::size_t>(across) + static_cast<std::size_t>(index[axis] % across);
     }
-    const auto file = this->FindFile(source, source.GetFileIndex(index));
+    using Kind = ZarrStore::Manner::Kind;
+    const auto file = this->FindFile(source, source.GetFileIndex(index),
+      { shards.IndexIsFirst ? Kind::FromFirst : Kind::FromLast, shards.IndexBytes });
     if (!file)
     {
       return std::nullopt;
@@ -555,6 +593,7 @@ private:
     return StoredFile::Place{ file, offset, static_cast<std::size_t>(bytes) };
   }
 
+  std::shared_ptr<ZarrStore> Store;
   std::string Folder;                                           ///< with what is shown
   std::string Name;                                             ///< of an array without one
   bool IsPlaced;                                                ///< by what it says

@@ -10,12 +10,13 @@
 #include "DSMVolumeFiles/zarr/ZarrJson.h"
 #include "DSMVolumeFiles/zarr/ZarrMetadata.h"
 #include "DSMVolumeFiles/zarr/ZarrNotes.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <system_error>
+#include <utility>
 
 namespace vol
 {
@@ -23,28 +24,13 @@ namespace vol
 namespace
 {
 
-/// Returns the names of the folders in a folder that may be arrays or groups; ascending.
-std::vector<std::string> FindFolders(const std::string& path)
-{
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(path))
-  {
-    const std::string folder = entry.path().string();
-    if (FindPathKind(folder) == PathKind::Directory && MayBeZarr(folder))
-    {
-      found.push_back(entry.path().filename().string());
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
 /// Looks through groups in one another.
 class Search
 {
 public:
-  explicit Search(std::string folder)
-    : Root(std::move(folder))
+  Search(const ZarrStore& store, std::string folder)
+    : Store(store)
+    , Root(std::move(folder))
   {
   }
 
@@ -59,7 +45,7 @@ public:
       return;
     }
     bool hasVolumes = false;
-    for (const std::string& name : FindFolders(folder))
+    for (const std::string& name : this->Store.FindFolders(folder))
     {
       CheckLimit(this->Root, "groups", ++this->Looked, FileLimits::Objects);
       const std::string path = inner.empty() ? name : inner + "/" + name;
@@ -80,11 +66,11 @@ public:
 
 private:
   /// Returns nothing for a group.
-  static std::optional<bool> IsVolume(const std::string& folder)
+  std::optional<bool> IsVolume(const std::string& folder) const
   {
     try
     {
-      const auto data = ReadZarrMetadata(folder);
+      const auto data = ReadZarrMetadata(this->Store, folder);
       return data ? std::optional<bool>(data->IsVolume()) : std::nullopt;
     }
     catch (const dsm::Error&)
@@ -93,11 +79,11 @@ private:
     }
   }
 
-  static bool IsImage(const std::string& folder)
+  bool IsImage(const std::string& folder) const
   {
     try
     {
-      const nlohmann::json attributes = ReadZarrAttributes(folder);
+      const nlohmann::json attributes = ReadZarrAttributes(this->Store, folder);
       return ZarrJson::Find(ZarrGroup::FindOme(attributes), "multiscales").size() > 0;
     }
     catch (const dsm::Error&)
@@ -106,6 +92,7 @@ private:
     }
   }
 
+  const ZarrStore& Store;
   std::string Root;
   std::uint64_t Looked = 0;
 };
@@ -125,16 +112,17 @@ std::string ZarrGroup::JoinInside(const std::string& folder, const std::string& 
   return folder + "/" + name;
 }
 
-std::vector<std::string> ZarrGroup::FindArrays(const std::string& folder, std::string& refused)
+std::vector<std::string> ZarrGroup::FindArrays(
+  const ZarrStore& store, const std::string& folder, std::string& refused)
 {
   std::map<std::string, VolumeShape> found;
   VolumeShape largest;
-  for (const std::string& name : FindFolders(folder))
+  for (const std::string& name : store.FindFolders(folder))
   {
     const std::string inner = folder + "/" + name;
     try
     {
-      const std::optional<ZarrMetadata> data = ReadZarrMetadata(inner);
+      const std::optional<ZarrMetadata> data = ReadZarrMetadata(store, inner);
       if (data && data->IsVolume())
       {
         const ZarrAxes axes = ZarrAxes::Find(inner, NameZarrAxes(inner, *data), data->Shape.size());
@@ -160,9 +148,9 @@ std::vector<std::string> ZarrGroup::FindArrays(const std::string& folder, std::s
   return names;
 }
 
-std::vector<std::string> ZarrGroup::FindInner(const std::string& folder)
+std::vector<std::string> ZarrGroup::FindInner(const ZarrStore& store, const std::string& folder)
 {
-  Search search(folder);
+  Search search(store, folder);
   search.LookAt({}, 0);
   std::sort(search.Found.begin(), search.Found.end());
   return std::move(search.Found);
@@ -186,17 +174,6 @@ std::vector<std::string> ZarrGroup::NameScales(
     names.push_back(isNew ? name : "multiscales/" + std::to_string(names.size()));
   }
   return names;
-}
-
-bool MayBeZarr(const std::string& path)
-{
-  const auto names = { "/.zarray", "/.zgroup", "/zarr.json" };
-  return std::any_of(names.begin(), names.end(),
-    [&](const char* name)
-    {
-      std::error_code failure;
-      return std::filesystem::exists(path + name, failure);
-    });
 }
 
 } // namespace vol

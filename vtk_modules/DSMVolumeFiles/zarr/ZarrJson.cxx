@@ -5,6 +5,7 @@
 #include "DSMVolumeFiles/base/BoundedJson.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,17 +67,22 @@ void ZarrJson::Refuse(const std::string& folder, const std::string& why)
   throw FileError(folder, "cannot be read: " + why);
 }
 
-nlohmann::json ZarrJson::Read(const std::string& folder, const std::string& name)
+nlohmann::json ZarrJson::Parse(const std::string& text, const char* skipped)
 {
-  const std::string path = folder + "/" + name;
-  if (FindPathKind(path) == PathKind::Nothing)
+  return ParseJson(WithQuotedWords(text), skipped);
+}
+
+nlohmann::json ZarrJson::Read(
+  const ZarrStore& store, const std::string& folder, const std::string& name)
+{
+  const std::optional<std::string> text = store.ReadMetadata(folder, name);
+  if (!text)
   {
     return {};
   }
-  const std::string text = WithQuotedWords(ReadWhole(path, FileLimits::JsonBytes));
   try
   {
-    return ParseJson(text, "consolidated_metadata");
+    return Parse(*text, "consolidated_metadata");
   }
   catch (const dsm::Error& error)
   {

@@ -15,13 +15,17 @@
 namespace vol
 {
 
+class ZarrStore;
+
 /// Zarr's metadata as they are in a file: checked before they are used.
 namespace ZarrJson
 {
 
 /// Reads a file in a folder; null where there is none. Consolidated metadata, copies of other files, are left out.
 /// Throws dsm::Error, which names the file, when it is larger or deeper than FileLimits has it, or not JSON.
-nlohmann::json Read(const std::string& folder, const std::string& name);
+nlohmann::json Read(const ZarrStore& store, const std::string& folder, const std::string& name);
+/// Parses a text of metadata, with the words that Python writes for numbers. `skipped`: see ParseJson, which throws.
+nlohmann::json Parse(const std::string& text, const char* skipped);
 
 using CodecJson::Find;
 

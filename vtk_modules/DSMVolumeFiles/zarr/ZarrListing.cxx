@@ -20,12 +20,15 @@ namespace
 {
 
 constexpr std::uint64_t MostListed = 1 << 24;
+constexpr std::uint64_t MostAbsent = 1 << 20;
+constexpr std::uint64_t AbsentBytes = 32;  ///< about what one takes
 constexpr std::uint64_t FolderBytes = 128; ///< about what a folder takes beside its files
 
 } // namespace
 
-ZarrListing::ZarrListing(const std::string& folder, const ZarrMetadata& data)
+ZarrListing::ZarrListing(const std::string& folder, const ZarrMetadata& data, bool canList)
   : Root(folder)
+  , CanList(canList)
   , IsNested(data.Separator == "/")
   , Folders(IsNested ? data.Shape.size() : 1)
 {
@@ -44,16 +47,27 @@ ZarrListing::ZarrListing(const std::string& folder, const ZarrMetadata& data)
   }
 }
 
+std::uint64_t ZarrListing::GetNumber(const Index& index) const
+{
+  std::uint64_t number = 0;
+  for (std::size_t axis = 0; axis < this->Counts.size(); ++axis)
+  {
+    number = number * this->Counts[axis] + static_cast<std::uint64_t>(index[axis]);
+  }
+  return number;
+}
+
 ZarrListing::End ZarrListing::Find(const Index& index) const
 {
+  if (!this->CanList)
+  {
+    return { 0, 0, this->Absent.count(this->GetNumber(index)) != 0 };
+  }
   std::uint64_t number = 0;
   if (!this->IsNested)
   {
     const auto root = this->Folders[0].find(0);
-    for (std::size_t axis = 0; axis < this->Counts.size(); ++axis)
-    {
-      number = number * this->Counts[axis] + static_cast<std::uint64_t>(index[axis]);
-    }
+    number = this->GetNumber(index);
     return { 0, 0,
       root != this->Folders[0].end() &&
         !std::binary_search(root->second.Files.begin(), root->second.Files.end(), number) };
@@ -87,9 +101,9 @@ bool ZarrListing::IsStillMissing(const Index& index)
   {
     const std::shared_lock<std::shared_mutex> lock(this->Guard);
     end = this->Find(index);
-    if (!end.IsMissing)
+    if (!end.IsMissing || !this->CanList)
     {
-      return false;
+      return end.IsMissing;
     }
     stamp = this->Folders[end.Depth].at(end.Number).Stamp;
   }
@@ -109,6 +123,15 @@ bool ZarrListing::IsStillMissing(const Index& index)
 
 void ZarrListing::NoteMissing(const Index& index)
 {
+  if (!this->CanList)
+  {
+    const std::unique_lock<std::shared_mutex> lock(this->Guard);
+    if (!this->Counts.empty() && this->Absent.size() < MostAbsent)
+    {
+      this->Absent.insert(this->GetNumber(index));
+    }
+    return;
+  }
   // Those above it have been listed when this returns, or have it and cannot be.
   while (!WithoutWaiting::IsInForce())
   {
@@ -139,7 +162,7 @@ void ZarrListing::NoteMissing(const Index& index)
 std::uint64_t ZarrListing::GetBytes() const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Guard);
-  std::uint64_t bytes = this->Listed * sizeof(std::uint64_t);
+  std::uint64_t bytes = this->Listed * sizeof(std::uint64_t) + this->Absent.size() * AbsentBytes;
   for (const auto& folders : this->Folders)
   {
     bytes += folders.size() * FolderBytes;

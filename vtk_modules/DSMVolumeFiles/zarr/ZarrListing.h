@@ -10,6 +10,7 @@
 #include <shared_mutex>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace vol
@@ -24,11 +25,12 @@ public:
   /// Place of a file along the array's axes, the slowest first; as many count as the array has axes.
   using Index = std::array<std::int64_t, 5>;
 
-  ZarrListing(const std::string& folder, const ZarrMetadata& data);
+  /// `canList`: else the files that were found to be missing are noted one by one, and stay so.
+  ZarrListing(const std::string& folder, const ZarrMetadata& data, bool canList);
 
   /// Returns whether there was no such file when its folder was listed. False where it was not.
   bool IsMissing(const Index& index) const;
-  /// The same, if the folder is unchanged since.
+  /// The same, if the folder is unchanged since, or cannot be listed.
   bool IsStillMissing(const Index& index);
   /// Lists the folder of a missing file, unless it was written to just now. To be called when there is no such
   /// file.
@@ -51,6 +53,8 @@ private:
     bool IsMissing;
   };
   End Find(const Index& index) const;
+  /// Returns a file's number among all of the array.
+  std::uint64_t GetNumber(const Index& index) const;
 
   std::string GetPath(const Index& index, std::size_t depth) const;
   /// Returns a file's number in a folder by its name; nothing for other names.
@@ -59,13 +63,15 @@ private:
   std::optional<Folder> List(const std::string& path) const;
 
   std::string Root;
-  std::string Prefix;                ///< of names
+  std::string Prefix; ///< of names
+  bool CanList;
   bool IsNested;                     ///< a folder for each index; else names have all
   std::vector<std::uint64_t> Counts; ///< of files along each axis; empty: too many to be numbered
 
   mutable std::shared_mutex Guard;
   std::vector<std::unordered_map<std::uint64_t, Folder>> Folders; ///< by depth and number
   std::uint64_t Listed = 0;                                       ///< files in them
+  std::unordered_set<std::uint64_t> Absent;                       ///< numbers, without listing
 };
 
 } // namespace vol

@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/codec/CodecJson.h"
 #include "DSMVolumeFiles/format/VolumeFile.h"
 #include "DSMVolumeFiles/zarr/ZarrJson.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 
 #include <algorithm>
 #include <charconv>
@@ -213,13 +214,13 @@ ChunkCodec MakeCodec(const std::string& folder, std::vector<CodecStep> steps)
   }
 }
 
-ZarrMetadata ParseVersion2(const std::string& folder, const Json& json)
+ZarrMetadata ParseVersion2(const ZarrStore& store, const std::string& folder, const Json& json)
 {
   ZarrMetadata data;
   data.Shape = GetShape(folder, json, "shape", MostSamples);
   data.ChunkShape = GetShape(folder, json, "chunks", MostSamples);
-  // Old nested stores do not declare it.
-  const bool looksNested = FindPathKind(folder + "/0") == PathKind::Directory;
+  const bool isDeclared = !ZarrJson::Find(json, "dimension_separator").is_null();
+  const bool looksNested = !isDeclared && store.LooksNested(folder, data.Shape.size());
   data.Separator = GetSeparator(folder, json, "dimension_separator", looksNested ? "/" : ".");
   data.FortranOrder = ZarrJson::GetText(folder, json, "order") == "F";
   std::vector<CodecStep> steps;
@@ -462,19 +463,19 @@ std::vector<std::uint64_t> ZarrMetadata::CountFiles() const
   return counts;
 }
 
-std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
+std::optional<ZarrMetadata> ReadZarrMetadata(const ZarrStore& store, const std::string& folder)
 {
   try
   {
-    const Json version2 = ZarrJson::Read(folder, ".zarray");
-    const Json version3 = version2.is_null() ? ZarrJson::Read(folder, "zarr.json") : Json();
+    const Json version2 = ZarrJson::Read(store, folder, ".zarray");
+    const Json version3 = version2.is_null() ? ZarrJson::Read(store, folder, "zarr.json") : Json();
     if (version2.is_null() && ZarrJson::GetText(folder, version3, "node_type") != "array")
     {
       return std::nullopt;
     }
     ZarrMetadata data =
-      version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(folder, version2);
-    data.Attributes = ReadZarrAttributes(folder);
+      version2.is_null() ? ParseVersion3(folder, version3) : ParseVersion2(store, folder, version2);
+    data.Attributes = ReadZarrAttributes(store, folder);
     if (!version2.is_null()) // as xarray writes them
     {
       data.Axes = ZarrJson::Find(data.Attributes, "_ARRAY_DIMENSIONS");
@@ -487,12 +488,12 @@ std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder)
   }
 }
 
-nlohmann::json ReadZarrAttributes(const std::string& folder)
+nlohmann::json ReadZarrAttributes(const ZarrStore& store, const std::string& folder)
 {
-  Json version3 = ZarrJson::Read(folder, "zarr.json");
+  Json version3 = ZarrJson::Read(store, folder, "zarr.json");
   if (version3.is_null())
   {
-    version3["attributes"] = ZarrJson::Read(folder, ".zattrs");
+    version3["attributes"] = ZarrJson::Read(store, folder, ".zattrs");
   }
   Json attributes = Json::object();
   if (ZarrJson::Find(version3, "attributes").is_object())

@@ -15,6 +15,8 @@
 namespace vol
 {
 
+class ZarrStore;
+
 /// Metadata of one Zarr array, of either version.
 struct ZarrMetadata
 {
@@ -51,10 +53,10 @@ struct ZarrMetadata
 
 /// Reads the metadata of the array in a folder; returns nothing if there is no array. Throws dsm::Error if this
 /// build cannot read it.
-std::optional<ZarrMetadata> ReadZarrMetadata(const std::string& folder);
+std::optional<ZarrMetadata> ReadZarrMetadata(const ZarrStore& store, const std::string& folder);
 
 /// The attributes of an array or a group, which may be empty.
-nlohmann::json ReadZarrAttributes(const std::string& folder);
+nlohmann::json ReadZarrAttributes(const ZarrStore& store, const std::string& folder);
 
 } // namespace vol
 

@@ -30,7 +30,8 @@ AxisNotes NameZarrAxes(const std::string& folder, const ZarrMetadata& data)
   return notes;
 }
 
-AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
+AxisNotes ReadZarrNotes(
+  const ZarrStore& store, const std::string& folder, const ZarrMetadata& data, const ZarrAxes& axes)
 {
   AxisNotes notes = NameZarrAxes(folder, data);
   const std::size_t count = data.Shape.size();
@@ -42,14 +43,15 @@ AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, con
   for (std::size_t axis = 0; axis < count; ++axis)
   {
     AxisNote& note = notes[axis];
-    if (IsPlainName(note.Name) && FindPathKind(beside + "/" + note.Name) == PathKind::Directory)
+    if (IsPlainName(note.Name) && store.MayHaveFolder(beside + "/" + note.Name))
     {
       const std::string coordinates = beside + "/" + note.Name;
-      auto numbers = ReadZarrVector(coordinates, static_cast<std::uint64_t>(data.Shape[axis]));
+      auto numbers =
+        ReadZarrVector(store, coordinates, static_cast<std::uint64_t>(data.Shape[axis]));
       if (numbers.size() == static_cast<std::size_t>(data.Shape[axis]))
       {
         note.Coordinates = std::move(numbers);
-        const nlohmann::json attributes = ReadZarrAttributes(coordinates);
+        const nlohmann::json attributes = ReadZarrAttributes(store, coordinates);
         note.Unit = ZarrJson::GetText(coordinates, attributes, "units");
         TakeUpDown(ZarrJson::GetText(coordinates, attributes, "positive"), note);
       }
@@ -58,8 +60,8 @@ AxisNotes ReadZarrNotes(const std::string& folder, const ZarrMetadata& data, con
   return notes;
 }
 
-void WarnOfZarrPlaces(
-  const std::string& folder, const ZarrMetadata& data, std::vector<std::string>& warnings)
+void WarnOfZarrPlaces(const ZarrStore& store, const std::string& folder, const ZarrMetadata& data,
+  std::vector<std::string>& warnings)
 {
   const std::string beside = std::filesystem::path(folder).parent_path().string();
   const auto getText = [&](const char* name)
@@ -72,7 +74,7 @@ void WarnOfZarrPlaces(
   {
     try
     {
-      const auto other = ReadZarrMetadata(beside + "/" + name);
+      const auto other = ReadZarrMetadata(store, beside + "/" + name);
       return other ? other->Shape.size() : 0;
     }
     catch (const dsm::Error&)

@@ -2,6 +2,7 @@
 #include "DSMVolumeFiles/zarr/ZarrParts.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/ByteBuffer.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
 
@@ -22,7 +23,7 @@ constexpr std::uint64_t StampBytes = 200;
 
 } // namespace
 
-void ZarrParts::CheckUnchanged(const PositionedFile& file)
+void ZarrParts::CheckUnchanged(const StampedSource& file)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   if (this->Stamps.size() >= MostStamps)
@@ -46,7 +47,7 @@ void ZarrParts::CheckNeverThere(const std::string& path)
 }
 
 ZarrParts::Index ZarrParts::GetIndex(
-  const ZarrMetadata::Sharding& shards, const PositionedFile& file)
+  const ZarrMetadata::Sharding& shards, const StampedSource& file)
 {
   const std::lock_guard<std::mutex> lock(this->Guard);
   const auto known = this->Indices.find(file.GetPath());
@@ -79,15 +80,15 @@ std::uint64_t ZarrParts::CountBytes(std::uint64_t files, std::uint64_t indexByte
 }
 
 ZarrParts::Index ZarrParts::ReadIndex(
-  const ZarrMetadata::Sharding& shards, const PositionedFile& file)
+  const ZarrMetadata::Sharding& shards, const StampedSource& file)
 {
-  if (file.IsDirectory() || file.GetBytes() < shards.IndexBytes)
+  if (file.GetBytes() < shards.IndexBytes)
   {
     throw FileError(file.GetPath(), "is truncated.");
   }
   ByteBuffer stored(shards.IndexBytes);
-  file.Read(
-    shards.IndexIsFirst ? 0 : file.GetBytes() - stored.size(), stored.data(), stored.size());
+  const std::uint64_t first = shards.IndexIsFirst ? 0 : file.GetBytes() - stored.size();
+  file.Read({ { first, stored.size() } }, stored.data());
   const std::size_t count = shards.IndexBytes / sizeof(std::uint64_t); // a checksum is less
   auto offsets = std::make_shared<std::vector<std::uint64_t>>(count / 2 * 2);
   try
@@ -97,6 +98,7 @@ ZarrParts::Index ZarrParts::ReadIndex(
   }
   catch (const dsm::Error& error)
   {
+    file.Doubt();
     throw FileError(
       file.GetPath(), "is a shard with an invalid index: " + std::string(error.what()));
   }

@@ -2,7 +2,7 @@
 #ifndef vol_ZarrParts_h
 #define vol_ZarrParts_h
 
-#include "DSMVolumeFiles/base/PositionedFile.h"
+#include "DSMVolumeFiles/base/ByteSource.h"
 #include "DSMVolumeFiles/zarr/ZarrMetadata.h"
 
 #include <cstddef>
@@ -27,11 +27,11 @@ public:
 
   /// Throws dsm::Error when the file was written to, or another took its place, since it was opened first: what was
   /// read of it must not meet other values.
-  void CheckUnchanged(const PositionedFile& file);
+  void CheckUnchanged(const StampedSource& file);
   /// Throws dsm::Error when there was a file that is no longer there: what chunks without one have is not its.
   void CheckNeverThere(const std::string& path);
   /// Returns the index of an unchanged file. Throws dsm::Error when it is truncated or damaged.
-  Index GetIndex(const ZarrMetadata::Sharding& shards, const PositionedFile& file);
+  Index GetIndex(const ZarrMetadata::Sharding& shards, const StampedSource& file);
 
   /// Returns an upper bound of the memory in bytes for so many files.
   static std::uint64_t CountBytes(std::uint64_t files, std::uint64_t indexBytes);
@@ -43,7 +43,7 @@ private:
     Index Offsets;
   };
 
-  static Index ReadIndex(const ZarrMetadata::Sharding& shards, const PositionedFile& file);
+  static Index ReadIndex(const ZarrMetadata::Sharding& shards, const StampedSource& file);
 
   std::mutex Guard;
   std::unordered_map<std::string, std::uint64_t> Stamps; ///< by path

@@ -4,9 +4,8 @@
 #include "DSMCore/base/Error.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
-#include "DSMVolumeFiles/base/PositionedFile.h"
-#include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/zarr/ZarrMetadata.h"
+#include "DSMVolumeFiles/zarr/ZarrStore.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -21,11 +20,14 @@ namespace
 {
 
 /// Numbers of one chunk, as they are stored.
-ByteBuffer ReadChunk(const ZarrMetadata& data, const std::string& path, std::size_t count)
+ByteBuffer ReadChunk(
+  const ZarrStore& store, const ZarrMetadata& data, const std::string& path, std::size_t count)
 {
   const std::size_t width = data.Fill.size();
   ByteBuffer numbers(count * width);
-  if (FindPathKind(path) == PathKind::Nothing)
+  const std::uint64_t most = data.Codec.CountMostStored(numbers.size(), 0);
+  const auto file = store.Open(path, { ZarrStore::Manner::Kind::Whole, most });
+  if (!file)
   {
     for (std::size_t index = 0; index < count; ++index)
     {
@@ -35,13 +37,12 @@ ByteBuffer ReadChunk(const ZarrMetadata& data, const std::string& path, std::siz
   }
   try
   {
-    const PositionedFile file(path);
-    if (file.GetBytes() > data.Codec.CountMostStored(numbers.size(), 0))
+    if (file->GetBytes() > most)
     {
       throw dsm::Error("it has too many bytes.");
     }
-    ByteBuffer stored(static_cast<std::size_t>(file.GetBytes()));
-    file.Read(0, stored.data(), stored.size());
+    ByteBuffer stored(static_cast<std::size_t>(file->GetBytes()));
+    file->Read({ { 0, stored.size() } }, stored.data());
     data.Codec.Decode(std::move(stored), 0, numbers.data(), numbers.size());
   }
   catch (const dsm::Error& error)
@@ -53,10 +54,11 @@ ByteBuffer ReadChunk(const ZarrMetadata& data, const std::string& path, std::siz
 
 } // namespace
 
-std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most)
+std::vector<double> ReadZarrVector(
+  const ZarrStore& store, const std::string& folder, std::uint64_t most)
 {
   std::vector<double> found;
-  const std::optional<ZarrMetadata> data = ReadZarrMetadata(folder);
+  const std::optional<ZarrMetadata> data = ReadZarrMetadata(store, folder);
   const bool isRight = data && data->Shape.size() == 1 && data->ChunkShape.size() == 1 &&
     data->Shape[0] > 0 && data->ChunkShape[0] > 0 && !data->Shards &&
     static_cast<std::uint64_t>(data->Shape[0]) <= std::min(most, FileLimits::Coordinates);
@@ -69,7 +71,7 @@ std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most
   for (std::int64_t first = 0; first < data->Shape[0]; first += data->ChunkShape[0])
   {
     const std::int64_t number = first / data->ChunkShape[0];
-    const ByteBuffer numbers = ReadChunk(*data, folder + "/" + data->GetKey(&number), chunk);
+    const ByteBuffer numbers = ReadChunk(store, *data, folder + "/" + data->GetKey(&number), chunk);
     const auto count = std::min(chunk, static_cast<std::size_t>(data->Shape[0] - first));
     for (std::size_t index = 0; index < count; ++index)
     {

@@ -9,9 +9,12 @@
 namespace vol
 {
 
+class ZarrStore;
+
 /// All numbers of the Zarr array of one axis in a folder, such as coordinates. None where there is no such array,
 /// or it has more than `most` numbers, or shards. Throws dsm::Error when a chunk cannot be read.
-std::vector<double> ReadZarrVector(const std::string& folder, std::uint64_t most);
+std::vector<double> ReadZarrVector(
+  const ZarrStore& store, const std::string& folder, std::uint64_t most);
 
 } // namespace vol
 

@@ -8,6 +8,7 @@
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
 #include "DSMVolumeFiles/base/FileError.h"
+#include "DSMVolumeFiles/base/Url.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/cache/FileCells.h"
 #include "DSMVolumeFiles/cache/FileSamples.h"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -144,7 +144,7 @@ std::vector<char> EncodeOpening(const vtkDSMFileValues& values)
     bytes.end(), options.Dataset.c_str(), options.Dataset.c_str() + options.Dataset.size() + 1);
   for (const std::string& path : values.GetFile()->GetPaths())
   {
-    const std::string whole = std::filesystem::absolute(path).string();
+    const std::string whole = vol::GetWholePath(path);
     bytes.insert(bytes.end(), whole.c_str(), whole.c_str() + whole.size() + 1);
   }
   return bytes;
