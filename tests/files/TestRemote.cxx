@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <thread>
 
 #include <sys/wait.h>
@@ -246,6 +247,334 @@ TEST_F(Remote, SaysWhatTheServerDoesAndWhere)
         << fault;
     }
   }
+}
+
+/// Also a server that says nothing, or next to nothing, ends in an error, and in a moment where it was so before.
+TEST_F(Remote, WaitsNoLongerThanItMay)
+{
+  vol::HttpLimits limits = vol::HttpLimits::Get();
+  limits.Seconds = 1;
+  vol::HttpLimits::Set(limits);
+  for (const char* behavior : { "silent", "trickle", "all_silent" })
+  {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string fault = FindFault(behavior, Volumes[0]);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    EXPECT_NE(fault.find("Operation too slow"), std::string::npos) << behavior << ": " << fault;
+    EXPECT_LT(taken.count(), 6.0) << behavior;
+  }
+  // Nobody is there.
+  const auto begin = std::chrono::steady_clock::now();
+  for (int time = 0; time < 2; ++time)
+  {
+    try
+    {
+      vol::OpenVolumeFile("http://127.0.0.1:1/x.zarr");
+      ADD_FAILURE();
+    }
+    catch (const dsm::Error& error)
+    {
+      const std::string what = error.what();
+      EXPECT_EQ(what.find("'http://127.0.0.1:1/x.zarr/zarr.json' cannot be read: "), 0u) << what;
+      EXPECT_NE(what.find("connect"), std::string::npos) << what;
+      EXPECT_EQ(what.find("attempts") == std::string::npos, time == 1) << what;
+    }
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+}
+
+/// What an opening says; "" where it succeeds.
+std::string FindRefusal(const std::string& url)
+{
+  try
+  {
+    vol::OpenVolumeFile(url);
+    return "";
+  }
+  catch (const dsm::Error& error)
+  {
+    return error.what();
+  }
+}
+
+TEST_F(Remote, RefusesWhatItDoesNotSpeakAndHidesPasswords)
+{
+  for (const char* url : { "file:///etc/passwd", "ftp://host/x.zarr", "gs://bucket/x.zarr" })
+  {
+    EXPECT_NE(FindRefusal(url).find("only http, https and s3"), std::string::npos) << url;
+  }
+  for (const char* url : { "https://me:geheim@host/x.zarr", "https://host/x.zarr?sig=geheim",
+         "s3://me:gehe/im@bucket/x", "https://host/x.zarr#geheim" })
+  {
+    const std::string refusal = FindRefusal(url);
+    EXPECT_NE(refusal.find("cannot be opened"), std::string::npos) << url;
+    EXPECT_EQ(refusal.find("gehe"), std::string::npos) << refusal;
+  }
+  const std::string file = FindRefusal("https://host/volume.h5");
+  EXPECT_NE(file.find("Copy the file"), std::string::npos) << file;
+  const std::string none = FindRefusal(Server::Get().GetUrl("ok", "nothing.zarr"));
+  EXPECT_NE(none.find("is not a Zarr store: the server answers 404"), std::string::npos) << none;
+  const std::string forbidden = FindRefusal(Server::Get().GetUrl("all_403", "group.zarr"));
+  EXPECT_NE(forbidden.find("403 Forbidden"), std::string::npos) << forbidden;
+  const std::string group = FindRefusal(Server::Get().GetUrl("ok", "group.zarr"));
+  EXPECT_NE(group.find("zarr.consolidate_metadata"), std::string::npos) << group;
+  vol::OpenOptions options;
+  options.Dataset = "b";
+  EXPECT_EQ(vol::OpenVolumeFile(Server::Get().GetUrl("ok", "group.zarr"), options)
+              ->GetArrays()
+              .front()
+              .Type,
+    bricks::ScalarType::Float32);
+  EXPECT_TRUE(vol::MayBeVolumeFile("https://host/x.zarr"));
+  EXPECT_FALSE(vol::IsBareFile("https://host/x.raw"));
+}
+
+/// Credentials of ~/.netrc are for the host that they name; those of the environment sign requests to S3.
+TEST_F(Remote, GivesCredentialsToNoOtherHost)
+{
+  const fs::path home = GetFolder() / "home";
+  fs::create_directories(home);
+  std::ofstream(home / ".netrc") << "machine 127.0.0.1 login me password geheim\n";
+  const std::string before = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", home.c_str(), 1);
+  Server::Get().TakeLog();
+  EXPECT_EQ(FindFault("all_redirect", "three_raw.zarr"), "");
+  setenv("HOME", before.c_str(), 1);
+  int leads = 0;
+  int follows = 0;
+  for (const Json& request : Server::Get().TakeLog())
+  {
+    const std::string path = request[1];
+    const std::string credentials = request[3];
+    const bool isFirst = path.find("/all_redirect/") == 0;
+    EXPECT_EQ(credentials.empty(), !isFirst) << path;
+    isFirst ? ++leads : ++follows;
+  }
+  EXPECT_GT(leads, 1);
+  EXPECT_EQ(leads, follows);
+}
+
+TEST_F(Remote, SignsRequestsToS3)
+{
+  setenv("AWS_ENDPOINT_URL", Server::Get().GetUrl("all_signed", "").c_str(), 1);
+  const auto open = []
+  {
+    const auto there = vol::OpenVolumeFile("s3://three_sharded.zarr");
+    const auto here = vol::OpenVolumeFile((GetFolder() / "three_sharded.zarr").string());
+    EXPECT_TRUE(ReadAll(*there) == ReadAll(*here));
+  };
+  EXPECT_NE(FindRefusal("s3://three_sharded.zarr")
+              .find("'s3://three_sharded.zarr/zarr.json' cannot "
+                    "be read: the server answers 403 Forbidden"),
+    std::string::npos);
+  setenv("AWS_ACCESS_KEY_ID", "KEY", 1);
+  setenv("AWS_SECRET_ACCESS_KEY", "se/cr+et", 1);
+  setenv("AWS_SESSION_TOKEN", "TOKEN", 1);
+  setenv("AWS_REGION", "eu-north-1", 1);
+  EXPECT_NO_THROW(open());
+  setenv("AWS_SECRET_ACCESS_KEY", "geheim", 1);
+  const std::string refusal = FindRefusal("s3://three_sharded.zarr");
+  EXPECT_NE(refusal.find("403 Forbidden"), std::string::npos) << refusal;
+  EXPECT_EQ(refusal.find("geheim"), std::string::npos) << refusal;
+  // Without keys.
+  for (const char* name : { "AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY", "AWS_SESSION_TOKEN" })
+  {
+    unsetenv(name);
+  }
+  setenv("AWS_ENDPOINT_URL", Server::Get().GetUrl("ok", "").c_str(), 1);
+  EXPECT_NO_THROW(open());
+  for (const char* name : { "AWS_ENDPOINT_URL", "AWS_REGION" })
+  {
+    unsetenv(name);
+  }
+  EXPECT_EQ(vol::RemotePlace("s3://bucket/a b/c.zarr").GetAddress("s3://bucket/a b/c.zarr/0.0?"),
+    "https://bucket.s3.us-east-1.amazonaws.com/a%20b/c.zarr/0.0%3F");
+}
+
+/// How many answers had a status.
+int CountAnswers(const Json& log, int status)
+{
+  return static_cast<int>(std::count_if(
+    log.begin(), log.end(), [=](const Json& request) { return request[4] == status; }));
+}
+
+TEST_F(Remote, AsksOnceForAChunkThatSeveralWant)
+{
+  for (const char* behavior : { "slow", "ok" })
+  {
+    for (const char* name : { "zlib_float32.zarr", "three_sharded_gzip.zarr" })
+    {
+      Server::Get().TakeLog();
+      const std::string url = Server::Get().GetUrl(behavior, name);
+      // As ranks do: each opens the volume.
+      std::vector<std::shared_ptr<const vol::VolumeFile>> files;
+      for (int rank = 0; rank < 4; ++rank)
+      {
+        files.push_back(vol::OpenVolumeFile(url));
+      }
+      std::vector<std::thread> ranks;
+      for (const auto& file : files)
+      {
+        ranks.emplace_back([&file] { ReadAll(*file); });
+      }
+      for (std::thread& rank : ranks)
+      {
+        rank.join();
+      }
+      const auto here = vol::OpenVolumeFile((GetFolder() / name).string());
+      const Json log = Server::Get().TakeLog();
+      std::map<std::string, int> bodies;
+      for (const Json& request : log)
+      {
+        if (request[4] == 200 || request[4] == 206)
+        {
+          ++bodies[request[1].get<std::string>() + request[2].get<std::string>()];
+        }
+      }
+      EXPECT_GT(bodies.size(), 20u);
+      for (const auto& [key, count] : bodies)
+      {
+        EXPECT_EQ(count, 1) << key;
+      }
+      // Later, the server is asked whether it is still so, and sends nothing.
+      EXPECT_EQ(FindFault(behavior, name), "");
+      const Json later = Server::Get().TakeLog();
+      EXPECT_GT(CountAnswers(later, 304), 0);
+      EXPECT_EQ(CountAnswers(later, 200) + CountAnswers(later, 206), 0) << later;
+    }
+  }
+}
+
+TEST_F(Remote, SaysThatAVolumeChangedWhileItWasOpen)
+{
+  const fs::path folder = GetFolder() / "changing.zarr";
+  fs::remove_all(folder);
+  fs::copy(GetFolder() / "zlib_float32.zarr", folder, fs::copy_options::recursive);
+  const std::string url = Server::Get().GetUrl("ok", "changing.zarr");
+  const auto read = [&](const vol::VolumeFile& file, const bricks::Index3& chunk) -> std::string
+  {
+    const vol::FileArray& array = file.GetArrays().front();
+    std::vector<std::byte> out(
+      static_cast<std::size_t>(array.Grid.GetBox(chunk).GetCount()) * array.GetSampleBytes());
+    try
+    {
+      file.ReadChunk(0, 0, chunk, out.data());
+      return "";
+    }
+    catch (const dsm::Error& error)
+    {
+      return error.what();
+    }
+  };
+  const auto file = vol::OpenVolumeFile(url);
+  EXPECT_EQ(read(*file, { 0, 0, 0 }), "");
+  std::ofstream(folder / "0.0.0", std::ios::app) << "more";
+  EXPECT_EQ(read(*file, { 0, 0, 0 }), "") << "as it was";
+  vol::KeptAnswers::GetShared().Drop(url + "/0.0.0");
+  EXPECT_EQ(read(*file, { 0, 0, 0 }),
+    "'" + url + "/0.0.0' changed or was replaced after it was opened. Reload it.");
+  fs::remove(folder / "0.0.0");
+  vol::KeptAnswers::GetShared().Drop(url + "/0.0.0");
+  EXPECT_EQ(read(*file, { 0, 0, 0 }), "'" + url + "/0.0.0' was deleted after it was opened.");
+  // A chunk that was not read is missing; then all of the store is.
+  fs::remove(folder / "0.0.1");
+  EXPECT_EQ(read(*file, { 1, 0, 0 }), "");
+  fs::remove_all(folder);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_EQ(read(*file, { 0, 1, 0 }), "'" + url + "/.zarray' was deleted after it was opened.");
+  EXPECT_EQ(read(*file, { 1, 0, 0 }), "") << "known to be missing";
+}
+
+TEST_F(Remote, MeetsNoStoreThatChangedBetweenOpenings)
+{
+  const fs::path folder = GetFolder() / "renewed.zarr";
+  for (const char* name : { "zlib_float32.zarr", "zstd_float32.zarr" })
+  {
+    fs::remove_all(folder);
+    fs::copy(GetFolder() / name, folder, fs::copy_options::recursive);
+    EXPECT_EQ(FindFault("ok", "renewed.zarr"), "");
+  }
+}
+
+TEST_F(Remote, DoesNotWaitWhereAThreadMayNot)
+{
+  const auto file = vol::OpenVolumeFile(Server::Get().GetUrl("ok", Volumes[0]));
+  std::vector<std::byte> out(1 << 16);
+  const vol::WithoutWaiting scope;
+  EXPECT_THROW(file->ReadChunk(0, 0, { 0, 0, 0 }, out.data()), vol::WouldWait);
+}
+
+TEST(KeptAnswers, StayWithinTheirLimitAndAreChecked)
+{
+  const fs::path folder = GetFolder() / "kept_answers";
+  fs::remove_all(folder);
+  constexpr std::uint64_t most = 1 << 16;
+  vol::KeptAnswers answers(folder, most);
+  const vol::HttpValidator tag{ "\"tag\"", "" };
+  const vol::ByteBuffer body(1000, std::byte(7));
+  for (int number = 0; number < 300; ++number)
+  {
+    answers.Keep("name" + std::to_string(number), tag, 5000, body);
+  }
+  std::uint64_t bytes = 0;
+  for (const auto& entry : fs::directory_iterator(folder))
+  {
+    bytes += entry.file_size();
+  }
+  EXPECT_LE(bytes, most);
+  EXPECT_GT(bytes, most / 2);
+  const auto kept = answers.Find("name299", 1000);
+  ASSERT_TRUE(kept);
+  EXPECT_TRUE(kept->Validator == tag && kept->Total == 5000 && kept->Body == body);
+  EXPECT_FALSE(answers.Find("name0", 1000));
+  EXPECT_FALSE(answers.Find("name299", 999));
+  answers.Keep("said nothing", {}, 1000, body);
+  EXPECT_FALSE(answers.Find("said nothing", 1000));
+  answers.Keep("large", tag, most, vol::ByteBuffer(most, std::byte(1)));
+  EXPECT_FALSE(answers.Find("large", most));
+  // Any byte may be damaged.
+  answers.Drop("name299");
+  EXPECT_FALSE(answers.Find("name299", 1000));
+  fs::remove_all(folder);
+  answers.Keep("one", tag, 1000, body);
+  const fs::path path = fs::directory_iterator(folder)->path();
+  const std::string whole = vol::ReadWhole(path.string(), 1 << 16);
+  for (std::size_t place = 0; place < whole.size(); place += place < 200 ? 1 : 97)
+  {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x20);
+    std::ofstream(path) << damaged;
+    EXPECT_FALSE(answers.Find("one", 1000)) << place;
+  }
+  std::ofstream(path) << whole;
+  EXPECT_TRUE(answers.Find("one", 1000));
+}
+
+TEST(HttpHead, TakesWhatServersWrite)
+{
+  const auto add = [](vol::HttpHead& head, const std::string& line)
+  { head.Add(line.data(), line.size()); };
+  vol::HttpHead head;
+  add(head, "HTTP/2 206\r\n");
+  add(head, "ETAG:   \"a b\"  \r\n");
+  add(head, "Content-Range: bytes 10-19/100\r\n");
+  add(head, "content-length: 10\r\n");
+  EXPECT_EQ(head.Status, 206);
+  EXPECT_EQ(head.Validator.Tag, "\"a b\"");
+  EXPECT_EQ(head.Check(vol::HttpRange{ 10, 10, false }, 10), "");
+  EXPECT_NE(head.Check(vol::HttpRange{ 10, 10, false }, 9), "");
+  EXPECT_NE(head.Check(vol::HttpRange{ 10, 9, false }, 10), "");
+  EXPECT_NE(head.Check(vol::HttpRange{ 0, 10, true }, 10), "");
+  EXPECT_NE(head.Check({}, 10), "");
+  for (const char* range : { "bytes 10-19/*", "bytes 19-10/100", "bytes 10-100/100", "10-19/100",
+         "bytes 10-19/100x", "bytes -1-19/100", "bytes 99999999999999999999-1/2", "" })
+  {
+    add(head, std::string("Content-Range: ") + range);
+    EXPECT_FALSE(head.Content) << range;
+  }
+  add(head, "HTTP/1.1 200 OK");
+  EXPECT_TRUE(head.Validator.IsEmpty());
+  EXPECT_EQ(head.Check({}, 5), "");
 }
 
 } // namespace

@@ -38,6 +38,12 @@ std::chrono::seconds GetLongestClaim()
   return std::chrono::seconds(2 * HttpLimits::Get().Seconds);
 }
 
+/// Returns the name of what is kept of a key.
+std::string NameKept(const std::string& path, const std::optional<HttpRange>& range)
+{
+  return range ? path + "#" + range->Write() : path;
+}
+
 /// A key in memory.
 class FetchedKey final : public StampedSource
 {
@@ -88,10 +94,11 @@ public:
   }
 
   /// Bytes that are here already.
-  void SetBeginning(std::uint64_t offset, ByteBuffer bytes)
+  void SetBeginning(const HttpRange& range, ByteBuffer bytes)
   {
-    this->Offset = offset;
+    this->Offset = range.FromEnd ? this->Whole.Total - bytes.size() : range.Offset;
     this->Bytes = std::move(bytes);
+    this->Names.push_back(NameKept(this->Path, range));
   }
 
   const std::string& GetPath() const override { return this->Path; }
@@ -148,12 +155,22 @@ private:
       return ByteBuffer(first, first + (end - begin));
     }
     const HttpRange part{ begin, end - begin };
-    const std::string name = this->Path + "#" + part.Write();
     {
       const std::lock_guard<std::mutex> lock(this->Guard);
-      this->Names.push_back(name);
+      this->Names.push_back(NameKept(this->Path, part));
     }
-    return this->Keys->ReadPart(this->Path, name, this->Whole, part);
+    std::optional<Answer> answer = this->Keys->Ask(this->Path, part, part.Bytes);
+    if (!answer)
+    {
+      throw FileError(this->Path, "was deleted after it was opened.");
+    }
+    const bool isSame = answer->Of.Validator == this->Whole.Validator &&
+      answer->Of.Total == this->Whole.Total && answer->Body.size() == part.Bytes;
+    if (!isSame)
+    {
+      throw FileError(this->Path, "changed or was replaced after it was opened. Reload it.");
+    }
+    return std::move(answer->Body);
   }
 
   std::shared_ptr<const RemoteKeys> Keys;
@@ -201,48 +218,63 @@ void RemoteKeys::Note(const std::string& path, const Known& now) const
   }
 }
 
+std::optional<RemoteKeys::Answer> RemoteKeys::Ask(
+  const std::string& path, const std::optional<HttpRange>& range, std::uint64_t most) const
+{
+  RefuseToWait();
+  const std::string name = NameKept(path, range);
+  const std::optional<Known> known = this->Find(path);
+  // Those who share the folder may have asked meanwhile.
+  const auto find = [&](bool& isSure) -> std::optional<Answer>
+  {
+    auto kept = this->Kept.Find(name, most);
+    if (!kept)
+    {
+      isSure = false;
+      return std::nullopt;
+    }
+    const Known now{ kept->Validator, kept->Total };
+    isSure = known ? known->Validator == now.Validator : kept->Checked > this->OpenedAt;
+    return Answer{ now, std::move(kept->Body) };
+  };
+  bool isSure = false;
+  std::optional<Answer> answer = find(isSure);
+  if (!isSure)
+  {
+    const KeptAnswers::Claim claim(this->Kept, name, GetLongestClaim());
+    answer = find(isSure);
+    if (!isSure)
+    {
+      HttpClient::Request request;
+      request.Path = path;
+      request.Range = range;
+      request.Most = most;
+      request.If = answer ? answer->Of.Validator : HttpValidator();
+      HttpClient::Answer told = HttpClient::Get(this->Place, request, this->GoesOn);
+      switch (told.How)
+      {
+        case HttpClient::Outcome::Missing:
+          return std::nullopt;
+        case HttpClient::Outcome::Unchanged:
+          this->Kept.Confirm(name);
+          break;
+        default:
+          this->Kept.Keep(name, told.Validator, told.Total, told.Body);
+          answer = Answer{ { told.Validator, told.Total }, std::move(told.Body) };
+      }
+    }
+  }
+  this->Note(path, answer->Of);
+  return answer;
+}
+
 std::shared_ptr<const StampedSource> RemoteKeys::Fetch(
   const std::string& path, std::uint64_t most) const
 {
-  RefuseToWait();
-  const auto make = [&](const HttpValidator& validator, ByteBuffer bytes)
-  {
-    const Known now{ validator, bytes.size() };
-    this->Note(path, now);
-    return std::make_shared<FetchedKey>(path, std::move(bytes), GetStampOf(now));
-  };
-  const std::optional<Known> known = this->Find(path);
-  // Those who share the folder may have asked meanwhile.
-  const auto isSure = [&](const std::optional<KeptAnswers::Kept>& kept) {
-    return kept && (known ? known->Validator == kept->Validator : kept->Checked > this->OpenedAt);
-  };
-  auto kept = this->Kept.Find(path, most);
-  if (isSure(kept))
-  {
-    return make(kept->Validator, std::move(kept->Body));
-  }
-  const KeptAnswers::Claim claim(this->Kept, path, GetLongestClaim());
-  kept = this->Kept.Find(path, most);
-  if (isSure(kept))
-  {
-    return make(kept->Validator, std::move(kept->Body));
-  }
-  HttpClient::Request request;
-  request.Path = path;
-  request.Most = most;
-  request.If = kept ? kept->Validator : HttpValidator();
-  HttpClient::Answer answer = HttpClient::Get(this->Place, request, this->GoesOn);
-  switch (answer.How)
-  {
-    case HttpClient::Outcome::Missing:
-      return nullptr;
-    case HttpClient::Outcome::Unchanged:
-      this->Kept.Confirm(path);
-      return make(kept->Validator, std::move(kept->Body));
-    default:
-      this->Kept.Keep(path, answer.Validator, answer.Body.size(), answer.Body);
-      return make(answer.Validator, std::move(answer.Body));
-  }
+  std::optional<Answer> answer = this->Ask(path, {}, most);
+  return answer
+    ? std::make_shared<FetchedKey>(path, std::move(answer->Body), GetStampOf(answer->Of))
+    : nullptr;
 }
 
 std::shared_ptr<const StampedSource> RemoteKeys::Open(
@@ -253,60 +285,14 @@ std::shared_ptr<const StampedSource> RemoteKeys::Open(
   {
     return std::make_shared<Parts>(this->shared_from_this(), path, *known);
   }
-  HttpClient::Request request;
-  request.Path = path;
-  request.Range = first;
-  request.Most = first.Bytes;
-  HttpClient::Answer answer = HttpClient::Get(this->Place, request, this->GoesOn);
-  if (answer.How != HttpClient::Outcome::Here)
+  std::optional<Answer> answer = this->Ask(path, first, first.Bytes);
+  if (!answer)
   {
     return nullptr;
   }
-  const Known now{ answer.Validator, answer.Total };
-  this->Note(path, now);
-  auto parts = std::make_shared<Parts>(this->shared_from_this(), path, now);
-  const std::uint64_t offset = first.FromEnd ? now.Total - answer.Body.size() : first.Offset;
-  parts->SetBeginning(offset, std::move(answer.Body));
+  auto parts = std::make_shared<Parts>(this->shared_from_this(), path, answer->Of);
+  parts->SetBeginning(first, std::move(answer->Body));
   return parts;
-}
-
-ByteBuffer RemoteKeys::ReadPart(
-  const std::string& path, const std::string& name, const Known& known, const HttpRange& part) const
-{
-  RefuseToWait();
-  const auto find = [&]() -> std::optional<ByteBuffer>
-  {
-    auto kept = this->Kept.Find(name, part.Bytes);
-    const bool isRight = kept && kept->Validator == known.Validator && kept->Total == known.Total &&
-      kept->Body.size() == part.Bytes;
-    return isRight ? std::optional<ByteBuffer>(std::move(kept->Body)) : std::nullopt;
-  };
-  if (auto bytes = find())
-  {
-    return std::move(*bytes);
-  }
-  const KeptAnswers::Claim claim(this->Kept, name, GetLongestClaim());
-  if (auto bytes = find())
-  {
-    return std::move(*bytes);
-  }
-  HttpClient::Request request;
-  request.Path = path;
-  request.Range = part;
-  request.Most = part.Bytes;
-  HttpClient::Answer answer = HttpClient::Get(this->Place, request, this->GoesOn);
-  if (answer.How != HttpClient::Outcome::Here)
-  {
-    throw FileError(path, "was deleted after it was opened.");
-  }
-  this->Note(path, { answer.Validator, answer.Total });
-  if (answer.Validator != known.Validator || answer.Total != known.Total ||
-    answer.Body.size() != part.Bytes)
-  {
-    throw FileError(path, "changed or was replaced after it was opened. Reload it.");
-  }
-  this->Kept.Keep(name, answer.Validator, answer.Total, answer.Body);
-  return std::move(answer.Body);
 }
 
 void RemoteKeys::AddStamp(const std::string& path, bricks::ByteHash& hash) const

@@ -55,9 +55,15 @@ private:
   std::optional<Known> Find(const std::string& path) const;
   /// Throws dsm::Error where something else was there before.
   void Note(const std::string& path, const Known& now) const;
-  /// Returns an answer to a request for a part, or what is kept of it. `name`: of what is kept.
-  ByteBuffer ReadPart(const std::string& path, const std::string& name, const Known& known,
-    const HttpRange& part) const;
+  struct Answer
+  {
+    Known Of;
+    ByteBuffer Body;
+  };
+  /// Returns a key, or a part of it, of at most so many bytes: what is kept of it, where that is right, or what the
+  /// server sends; nothing where it says that there is none.
+  std::optional<Answer> Ask(
+    const std::string& path, const std::optional<HttpRange>& range, std::uint64_t most) const;
   static std::uint64_t GetStampOf(const Known& known);
 
   RemotePlace Place;

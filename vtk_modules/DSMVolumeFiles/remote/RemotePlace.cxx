@@ -80,8 +80,9 @@ RemotePlace::RemotePlace(const std::string& url)
     refuse("it has a '?' or '#'. A Zarr store has many keys, and an address with a query names "
            "one. Open the store's folder.");
   }
-  const bool hasControls = std::any_of(
-    rest.begin(), rest.end(), [](unsigned char letter) { return letter <= ' ' || letter == 0x7f; });
+  const bool hasControls = std::any_of(rest.begin(), rest.end(),
+    [&](unsigned char letter)
+    { return letter < ' ' || letter == 0x7f || (letter == ' ' && scheme != "s3"); });
   const std::string host = rest.substr(0, rest.find('/'));
   if (host.empty() || hasControls)
   {

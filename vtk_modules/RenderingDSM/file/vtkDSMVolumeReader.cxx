@@ -2,6 +2,7 @@
 #include "vtkDSMVolumeReader.h"
 
 #include "DSMCore/base/Error.h"
+#include "DSMVolumeFiles/base/Url.h"
 #include "DSMVolumeFiles/cache/ChunkCache.h"
 #include "DSMVolumeFiles/open/OpenVolumeFile.h"
 #include "vtkDSMErrorGuard.h"
@@ -238,7 +239,8 @@ vtkTypeUInt64 vtkDSMVolumeReader::GetBytesRead()
 int vtkDSMVolumeReader::Attempt(const char* doing, const std::function<void()>& work)
 {
   Silence(this->GetExecutive());
-  const std::string failure = vtkDSMErrorGuard::Try(doing, this->GetFileName(), work);
+  const std::string failure =
+    vtkDSMErrorGuard::Try(doing, vol::HideCredentials(this->GetFileName()).c_str(), work);
   if (!failure.empty() && (failure != this->Self->Told || this->Self->ToldAt != this->GetMTime()))
   {
     vtkErrorMacro(<< failure);
@@ -639,7 +641,7 @@ void vtkDSMVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   for (const std::string& name : this->FileNames)
   {
-    os << indent << "FileName: " << name << "\n";
+    os << indent << "FileName: " << vol::HideCredentials(name) << "\n";
   }
   os << indent << "Level: " << this->Level << "\n";
   os << indent << "DatasetName: " << this->DatasetName << "\n";
