@@ -10,7 +10,7 @@ import sys
 
 folder, convert, write_seeds = sys.argv[1:]
 shutil.rmtree(folder, ignore_errors=True)
-for part in ("headers", "zarrs", "hdf"):
+for part in ("headers", "zarrs", "hdf", "answers"):
     importlib.import_module(f"seeds.{part}").make(folder)
 importlib.import_module("seeds.bricks").make(folder, convert)
 subprocess.run([write_seeds, folder], check=True)
