@@ -81,8 +81,8 @@ Options Parse(CLI::App& app, int argc, char** argv)
   std::size_t mebibytes = 0;
   app
     .add_option("IN", options.In,
-      "volume to read, in a format of DSM Volume Reader: HDF5, Zarr (its folder), NRRD, MetaImage, "
-      "raw")
+      "volume to read, in a format of DSM Volume Reader: HDF5, Zarr (its folder, or its address: "
+      "https://HOST/image.zarr), NRRD, MetaImage, raw")
     ->required();
   app
     .add_option(

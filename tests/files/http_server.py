@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Serves the folders of a folder over HTTP, with byte ranges and ETags, and misbehaves as the first part of a path says:
+"""Serves a folder over HTTP, with byte ranges and ETags, and misbehaves as the first part of a path says:
 /BEHAVIOR/NAME.zarr/KEY. Called as http_server.py FOLDER [SECONDS]: prints its port, and ends after so many seconds, or
 when its input ends. Files of metadata are served as they should be, but by behaviors that begin with "all_".
 

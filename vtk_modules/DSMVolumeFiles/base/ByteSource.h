@@ -34,7 +34,7 @@ public:
   virtual void Read(const std::vector<Piece>& pieces, std::byte* out) const = 0;
   /// The system may read pieces, in any order, to its own cache already; does not wait for it.
   virtual void Prefetch(std::vector<Piece> pieces) const = 0;
-  /// What was read cannot be right: copies of it that are kept elsewhere are not to be used again.
+  /// The caller found damage in bytes that it read: copies of them that are kept elsewhere are not used again.
   virtual void Doubt() const {}
 };
 

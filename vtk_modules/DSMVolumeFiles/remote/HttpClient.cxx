@@ -52,71 +52,79 @@ constexpr int MostRedirects = 5;
 constexpr double LongestPause = 10.0; ///< that a server may ask for
 /// A server that did not answer is asked only once in a while, so that a reader that opens again soon fails soon.
 constexpr std::chrono::seconds DeadTime(10);
-constexpr std::size_t MostKeptHandles = 32;
+constexpr std::size_t MostKeptPools = 32;
+constexpr long MostIdleConnections = 4; ///< of each
+constexpr int PollMilliseconds = 100;   ///< from one look at the caller's wishes to the next
 
-/// Handles of libcurl, which keep connections, and what they share.
-class HandlePool
+/// Connections, and what they share. Each transfer has a handle of its own: up to libcurl 8.2, one that is used again
+/// reads freed memory when a server's first header begins with a blank.
+class ConnectionPool
 {
 public:
-  static HandlePool& GetShared()
+  static ConnectionPool& GetShared()
   {
-    static auto* const pool = new HandlePool; // threads may be at a transfer when the process ends
+    static auto* const pool =
+      new ConnectionPool; // threads may be at a transfer when the process ends
     return *pool;
   }
 
-  CURL* Take()
+  /// Open connections of former transfers, for one at a time.
+  CURLM* Take()
   {
-    CURL* handle = nullptr;
     {
       const std::lock_guard<std::mutex> lock(this->Guard);
       if (!this->Free.empty())
       {
-        handle = this->Free.back();
+        CURLM* const taken = this->Free.back();
         this->Free.pop_back();
+        return taken;
       }
     }
-    handle = handle ? handle : curl_easy_init();
-    if (!handle)
+    CURLM* const made = curl_multi_init();
+    if (!made)
     {
       throw std::bad_alloc();
     }
-    curl_easy_reset(handle);
-    curl_easy_setopt(handle, CURLOPT_SHARE, this->Share);
-    return handle;
+    curl_multi_setopt(made, CURLMOPT_MAXCONNECTS, MostIdleConnections);
+    return made;
   }
 
-  void Return(CURL* handle)
+  void Return(CURLM* connections)
   {
-    const std::lock_guard<std::mutex> lock(this->Guard);
-    if (this->Free.size() < MostKeptHandles)
     {
-      this->Free.push_back(handle);
-      return;
+      const std::lock_guard<std::mutex> lock(this->Guard);
+      if (this->Free.size() < MostKeptPools)
+      {
+        this->Free.push_back(connections);
+        return;
+      }
     }
-    curl_easy_cleanup(handle);
+    curl_multi_cleanup(connections);
   }
+
+  CURLSH* GetNames() const { return this->Share; }
 
 private:
-  HandlePool()
+  ConnectionPool()
   {
     curl_global_init(CURL_GLOBAL_DEFAULT);
-    this->Free.reserve(MostKeptHandles);
+    this->Free.reserve(MostKeptPools);
     this->Share = curl_share_init();
     curl_share_setopt(this->Share, CURLSHOPT_USERDATA, this);
     curl_share_setopt(
       this->Share, CURLSHOPT_LOCKFUNC,
       +[](CURL*, curl_lock_data data, curl_lock_access, void* self)
-      { static_cast<HandlePool*>(self)->Locks[data].lock(); });
+      { static_cast<ConnectionPool*>(self)->Locks[data].lock(); });
     curl_share_setopt(
       this->Share, CURLSHOPT_UNLOCKFUNC,
       +[](CURL*, curl_lock_data data, void* self)
-      { static_cast<HandlePool*>(self)->Locks[data].unlock(); });
+      { static_cast<ConnectionPool*>(self)->Locks[data].unlock(); });
     curl_share_setopt(this->Share, CURLSHOPT_SHARE, CURL_LOCK_DATA_DNS);
     curl_share_setopt(this->Share, CURLSHOPT_SHARE, CURL_LOCK_DATA_SSL_SESSION);
   }
 
   std::mutex Guard;
-  std::vector<CURL*> Free;
+  std::vector<CURLM*> Free;
   CURLSH* Share = nullptr;
   std::mutex Locks[CURL_LOCK_DATA_LAST];
 };
@@ -130,13 +138,17 @@ public:
     : Wanted(request)
     , GoesOn(goesOn)
     , Address(std::move(address))
-    , Handle(HandlePool::GetShared().Take())
+    , Handle(curl_easy_init())
   {
+    if (!this->Handle)
+    {
+      throw std::bad_alloc();
+    }
     this->SetOptions(withCredentials ? &place.GetSignature() : nullptr);
   }
   ~Transfer()
   {
-    HandlePool::GetShared().Return(this->Handle);
+    curl_easy_cleanup(this->Handle);
     curl_slist_free_all(this->Lines);
   }
   Transfer(const Transfer&) = delete;
@@ -153,7 +165,7 @@ public:
   };
   Result Run()
   {
-    const CURLcode code = curl_easy_perform(this->Handle);
+    const CURLcode code = this->Perform();
     Result result;
     if (this->IsAborted)
     {
@@ -193,6 +205,35 @@ public:
   ByteBuffer Body;
 
 private:
+  CURLcode Perform()
+  {
+    ConnectionPool& pool = ConnectionPool::GetShared();
+    CURLM* const connections = pool.Take();
+    CURLcode code = CURLE_FAILED_INIT;
+    CURLMcode state = curl_multi_add_handle(connections, this->Handle);
+    for (int running = 1; state == CURLM_OK && running > 0;)
+    {
+      state = curl_multi_perform(connections, &running);
+      if (state == CURLM_OK && running > 0)
+      {
+        this->Ask();
+        if (this->IsAborted)
+        {
+          break;
+        }
+        state = curl_multi_poll(connections, nullptr, 0, PollMilliseconds, nullptr);
+      }
+    }
+    int left = 0;
+    while (const CURLMsg* const told = curl_multi_info_read(connections, &left))
+    {
+      code = told->msg == CURLMSG_DONE ? told->data.result : code;
+    }
+    curl_multi_remove_handle(connections, this->Handle);
+    pool.Return(connections);
+    return code;
+  }
+
   static bool MayPass(CURLcode code)
   {
     constexpr CURLcode passing[] = { CURLE_COULDNT_RESOLVE_PROXY, CURLE_COULDNT_RESOLVE_HOST,
@@ -267,6 +308,7 @@ private:
   void SetOptions(const RemotePlace::Signature* credentials)
   {
     const HttpLimits limits = HttpLimits::Get();
+    this->Set(CURLOPT_SHARE, ConnectionPool::GetShared().GetNames());
     this->Set(CURLOPT_URL, this->Address.c_str());
 #if LIBCURL_VERSION_NUM >= 0x075500
     this->Set(CURLOPT_PROTOCOLS_STR, "http,https");
@@ -294,15 +336,6 @@ private:
       CURLOPT_WRITEFUNCTION,
       +[](char* bytes, std::size_t size, std::size_t count, void* self) -> std::size_t
       { return static_cast<Transfer*>(self)->TakeBytes(bytes, size * count); });
-    if (this->GoesOn)
-    {
-      this->Set(CURLOPT_NOPROGRESS, 0L);
-      this->Set(CURLOPT_XFERINFODATA, this);
-      this->Set(
-        CURLOPT_XFERINFOFUNCTION,
-        +[](void* self, curl_off_t, curl_off_t, curl_off_t, curl_off_t) -> int
-        { return static_cast<Transfer*>(self)->Ask(); });
-    }
     // As the program curl has them.
     for (const char* name : { "CURL_CA_BUNDLE", "SSL_CERT_FILE" })
     {
@@ -408,18 +441,16 @@ private:
     }
   }
 
-  /// Returns 0 where the transfer goes on.
-  int Ask()
+  void Ask()
   {
     try
     {
-      this->IsAborted = !this->GoesOn();
+      this->IsAborted = this->GoesOn && !this->GoesOn();
     }
     catch (...)
     {
       this->IsAborted = true;
     }
-    return this->IsAborted ? 1 : 0;
   }
 
   const HttpClient::Request& Wanted;

@@ -24,7 +24,7 @@ struct HttpLimits
   int Attempts = 5;
   double FirstPause = 0.25; ///< in seconds; each further pause is twice as long
 
-  /// Those of the process: $DSM_HTTP_SECONDS replaces Seconds.
+  /// The process's limits. $DSM_HTTP_SECONDS replaces Seconds.
   static HttpLimits Get();
   static void Set(const HttpLimits& limits);
 };

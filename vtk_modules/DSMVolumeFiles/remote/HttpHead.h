@@ -10,7 +10,7 @@
 namespace vol
 {
 
-/// What a server says to tell one state of a key from another.
+/// Marks by which a server tells one state of a key from another.
 struct HttpValidator
 {
   std::string Tag;      ///< ETag

@@ -22,7 +22,7 @@ namespace vol
 class KeptAnswers
 {
 public:
-  /// That of the process, of $DSM_HTTP_CACHE_MIB (4096) MiB. 0: nothing is kept.
+  /// Returns the process's cache, of $DSM_HTTP_CACHE_MIB (4096) MiB. 0: nothing is kept.
   static KeptAnswers& GetShared();
 
   /// `folder`: empty: nothing is kept.
@@ -48,7 +48,7 @@ public:
   void Drop(const std::string& name) const;
 
   /// As long as it is in scope, no other thread or process has a claim to the same name: the second one finds what the
-  /// first one keeps. Who waits for longer than `limit` goes on without.
+  /// first one keeps. Who waits for longer than `limit` continues without.
   class Claim
   {
   public:
