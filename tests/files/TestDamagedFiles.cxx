@@ -122,6 +122,32 @@ TEST_F(DamagedFile, WithAWrongByteSaysSo)
   ExpectWords(Read(index), { "index", "checksum" });
 }
 
+TEST_F(DamagedFile, ThatIsAnArchiveSaysSo)
+{
+  const Json entry = this->Copy("raw_zipped.zip");
+  const auto size = static_cast<std::int64_t>(fs::file_size(this->Path));
+  // The directory and its end; then wherever it is cut.
+  int refused = 0;
+  for (std::int64_t fromEnd = 1; fromEnd <= 3000; fromEnd += 7)
+  {
+    FlipByte(this->Path, fromEnd);
+    const std::string what = Read(entry);
+    refused += what.empty() ? 0 : 1;
+    if (!what.empty())
+    {
+      ExpectWords(what, { "raw_zipped.zip" });
+    }
+    FlipByte(this->Path, fromEnd);
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_EQ(Read(entry), "");
+  for (std::int64_t bytes = size - 1; bytes > 4; bytes -= bytes > size - 40 ? 1 : size / 50)
+  {
+    fs::resize_file(this->Path, static_cast<std::uintmax_t>(bytes));
+    ExpectWords(Read(entry), { "raw_zipped.zip", "damaged ZIP archive" });
+  }
+}
+
 /// Meanwhile, root reads no more than others do. Of this thread.
 class WithoutPrivileges
 {
@@ -201,7 +227,7 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
     Read(write("e.txt", "no volume")), { "e.txt", "unknown format", "Zarr", "Save Data" });
   ExpectWords(Read(write("e.h5", "")), { "e.h5", "is empty" });
   ExpectWords(
-    Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "Unpack it" });
+    Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "damaged ZIP archive" });
   ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "has no header" });
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")),
     { "g.h5", "cannot be opened as HDF5" });

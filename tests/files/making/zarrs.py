@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import struct
+import zipfile
 
 import numpy as np
 import zarr
@@ -377,3 +378,28 @@ for name, orders in (("turned", [turn]), ("twice", [turn, turn]), ("still", [tur
                      ("around", [around] * 3)):
     write_version3(f"three_{name}.zarr", [], [4, 5, 8], None, orders)
     write_version3(f"three_{name}_sharded.zarr", ["zstd"], [2, 5, 4], [4, 10, 8], orders)
+
+
+def write_zip(name, source, method, inside="", large=False):
+    """A folder as a ZIP archive, without its folders; `inside`: one around all."""
+    with zipfile.ZipFile(path(name), "w", method) as archive:
+        for where, _, files in sorted(os.walk(path(source))):
+            for each in sorted(files):
+                member = os.path.join(where, each)
+                with archive.open(inside + os.path.relpath(member, path(source)), "w", force_zip64=large) as out, \
+                        open(member, "rb") as file:
+                    out.write(file.read())
+        archive.comment = b'{"ome": {"version": "0.5"}}' if name.endswith(".ozx") else b""
+
+
+# OME's zipped Zarr, and others: several arrays, levels, shards; compressed, in a folder, with numbers of 64 bits.
+write_zip("ome_zipped.ozx", "ome.zarr", zipfile.ZIP_STORED)
+note("ome_zipped.ozx", channels, steps=3, spacing=[1.0, 2.0, 4.0], levels=2)
+write_zip("group_zipped.zip", "group.zarr", zipfile.ZIP_DEFLATED, "group.zarr/", large=True)
+note("group_zipped.zip", [("a", "uint8"), ("b", "float32", 1, 2)])
+write_zip("holes_zipped.zip", "holes.zarr", zipfile.ZIP_STORED)
+note("holes_zipped.zip", [("holes_zipped", "float32")], fill=42.0, filled=[8, 5, 4])
+write_zip("three_zipped.ozx", "three_sharded.zarr", zipfile.ZIP_STORED)
+note("three_zipped.ozx", [(None, "float32")])
+write_zip("raw_zipped.zip", "raw_float32.zarr", zipfile.ZIP_DEFLATED)
+note("raw_zipped.zip", [("raw_zipped", "float32")])

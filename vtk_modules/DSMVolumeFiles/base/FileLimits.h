@@ -44,6 +44,8 @@ constexpr std::size_t HeaderBytes = 1 << 20; ///< header of a NRRD or MetaImage 
 constexpr std::size_t JsonBytes = 8 << 20;   ///< file of Zarr metadata
 constexpr std::size_t JsonValues = 1 << 17;  ///< in it, without its copies of other files
 constexpr std::size_t JsonDepth = 64;
+constexpr std::uint64_t ZipDirectoryBytes = 1
+  << 30; ///< names of members of an archive, and what belongs to them
 
 } // namespace FileLimits
 

@@ -118,6 +118,11 @@ std::shared_ptr<VolumeFile> OpenUrl(const std::string& url, const OpenOptions& o
   return OpenZarr(folder, options);
 }
 
+bool IsZip(const std::string& path)
+{
+  return FindPathKind(path) == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04";
+}
+
 /// Opens a file of one format.
 using Format = std::shared_ptr<VolumeFile> (*)(const std::string& path, const OpenOptions& options);
 
@@ -136,6 +141,10 @@ Format FindFormat(const std::string& path)
   if (FindPathKind(path) != PathKind::File)
   {
     return nullptr;
+  }
+  if (IsZip(path))
+  {
+    return &OpenZarr;
   }
   if (ReadBeginning(path, 7) == "NRRD000")
   {
@@ -183,12 +192,6 @@ std::shared_ptr<VolumeFile> OpenAsItIs(const std::string& path, const OpenOption
   if (const Format open = FindFormat(path))
   {
     return open(path, options);
-  }
-  if (kind == PathKind::File && ReadBeginning(path, 4) == "PK\x03\x04")
-  {
-    throw FileError(path,
-      "is a ZIP archive, which cannot be read. Unpack it and open the Zarr folder that it "
-      "contains.");
   }
   if (kind == PathKind::File && PositionedFile(path).GetBytes() == 0)
   {
@@ -254,7 +257,7 @@ std::shared_ptr<const VolumeFile> OpenVolumeFile(
     return array.Name.compare(0, wanted.size(), wanted) == 0 &&
       (array.Name.size() == wanted.size() || isPart);
   };
-  if (!options.Dataset.empty() && FindZarrFolder(path).empty() &&
+  if (!options.Dataset.empty() && FindZarrFolder(path).empty() && !IsZip(path) &&
     !std::all_of(arrays.begin(), arrays.end(), isOfDataset))
   {
     throw FileError(path,

@@ -7,6 +7,7 @@
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/base/Url.h"
 #include "DSMVolumeFiles/zarr/ZarrRemote.h"
+#include "DSMVolumeFiles/zarr/ZarrZip.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -95,7 +96,12 @@ public:
 std::shared_ptr<ZarrStore> ZarrStore::Make(
   const std::string& path, const std::function<bool()>& goesOn)
 {
-  return IsUrl(path) ? MakeZarrRemote(path, goesOn) : std::make_shared<ZarrFolders>();
+  if (IsUrl(path))
+  {
+    return MakeZarrRemote(path, goesOn);
+  }
+  return FindPathKind(path) == PathKind::File ? MakeZarrZip(path)
+                                              : std::make_shared<ZarrFolders>();
 }
 
 bool MayBeZarr(const std::string& path)

@@ -16,12 +16,12 @@
 namespace vol
 {
 
-/// Where a Zarr volume is: a folder of the file system, or an address. Its keys are named by whole paths, "/" between
+/// Where a Zarr volume is: a folder of the file system, a ZIP archive, or an address. Its keys are named by whole paths, "/" between
 /// folders. All functions throw dsm::Error, which names the path, where it is not known what is there. Any thread.
 class ZarrStore
 {
 public:
-  /// `path`: a folder, or an address (IsUrl). `goesOn`: see OpenOptions; until EndOpening.
+  /// `path`: a folder, a ZIP archive of one, or an address (IsUrl). `goesOn`: see OpenOptions; until EndOpening.
   static std::shared_ptr<ZarrStore> Make(
     const std::string& path, const std::function<bool()>& goesOn);
 
