@@ -16,8 +16,9 @@
 namespace vol
 {
 
-/// Where a Zarr volume is: a folder of the file system, a ZIP archive, or an address. Its keys are named by whole paths,
-/// "/" between folders. All functions throw dsm::Error, which names the path, where it is not known what is there. Any thread.
+/// Where a Zarr volume is: a folder, a ZIP archive, or an address. Its keys are named by whole paths,
+/// "/" between folders. All functions throw dsm::Error, which names the path, where it is not known what is there. Any
+/// thread.
 class ZarrStore
 {
 public:
