@@ -211,6 +211,11 @@ int vtkDSMVolumeReader::CanReadFile(const char* name)
   }
 }
 
+bool vtkDSMVolumeReader::IsAddress(const char* name)
+{
+  return name && vol::IsUrl(name);
+}
+
 vtkDataArraySelection* vtkDSMVolumeReader::GetPointDataArraySelection()
 {
   return this->PointArrays;

@@ -40,8 +40,9 @@ public:
 
   ///@{
   /**
-   * The file; for Zarr, its folder, or a file of metadata in it. Several files are time steps, in the order in
-   * which they are added; all must have the same arrays, samples and chunks. GetFileName returns the first.
+   * The file; for Zarr, its folder, a file of metadata in it, or its address on a server. Several files are time steps,
+   * in the order in which they are added; all must have the same arrays, samples and chunks. GetFileName returns the
+   * first.
    */
   virtual void SetFileName(const char* name);
   virtual void AddFileName(const char* name);
@@ -54,6 +55,12 @@ public:
    * Returns whether a file looks like one of the supported formats.
    */
   virtual int CanReadFile(const char* name);
+
+  /**
+   * Returns whether a name is an address of a server, such as "https://host/image.zarr", and not a path. Only Zarr is
+   * read from servers.
+   */
+  static bool IsAddress(const char* name);
 
   ///@{
   /**

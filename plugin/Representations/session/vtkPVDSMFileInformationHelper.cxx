@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPVDSMFileInformationHelper.h"
+
+#include "vtkDSMVolumeReader.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkPVDSMFileInformationHelper);
+
+bool vtkPVDSMFileInformationHelper::GetActiveFileIsReadable()
+{
+  return vtkDSMVolumeReader::IsAddress(this->GetPath()) ||
+    this->Superclass::GetActiveFileIsReadable();
+}
