@@ -54,6 +54,12 @@ for name in ("ball.zarr", "holes.zarr", "three_sharded.zarr"):
         check(max(counts.values(), default=1) == 1, f"{name}, {organization}: no rank fetches what another one has")
         check(organization == "Replicated" or len(counts) > 1, f"{name}: it came from the server")
 
+source = simple.OpenDataFile(get_url("ok", "ball.zarr"))
+check(source.SMProxy.GetXMLName() == "DSMVolumeReader", "OpenDataFile takes an address")
+source.UpdatePipeline()
+check(abs(source.PointData["ball"].GetRange(0)[1] - 3**0.5) < 1e-6, "and its values are there")
+simple.Delete(source)
+
 # What is said, and by whom it is noticed, does not matter: all ranks go on.
 last = render(view)
 for behavior, words in (("403", "403 Forbidden"), ("cut", "transfer closed"), ("other_bytes", "cannot be read")):

@@ -104,7 +104,7 @@ protected:
     vol::HttpLimits limits;
     limits.Seconds = 2;
     limits.Attempts = 4;
-    limits.FirstPause = 0.01;
+    limits.FirstPause = 0.003;
     vol::HttpLimits::Set(limits);
   }
 };

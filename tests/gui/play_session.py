@@ -27,10 +27,10 @@ def check(condition, what):
     print("ok:", what, flush=True)
 
 
-def write_session(path):
+def write_session(path, address):
     with open(os.path.join(HERE, "session.xml"), encoding="utf-8") as text:
         content = text.read()
-    for name, value in (("@PLUGIN@", PLUGIN), ("@OUTPUT@", OUTPUT), ("@RANKS@", str(RANKS)),
+    for name, value in (("@PLUGIN@", PLUGIN), ("@OUTPUT@", OUTPUT), ("@RANKS@", str(RANKS)), ("@ADDRESS@", address),
                         ("@FILE_DIALOG@", file_dialog.get_name(PARAVIEW))):
         content = content.replace(name, value)
     has_panel = os.path.exists(os.path.join(os.path.dirname(PLUGIN), "DSMRayTracerPanel.so"))
@@ -81,9 +81,12 @@ def main():
     os.makedirs(OUTPUT)
     write_files()
     session = os.path.join(OUTPUT, "session.xml")
-    write_session(session)
+    server = subprocess.Popen([sys.executable, os.path.join(HERE, "..", "files", "http_server.py"), OUTPUT],
+                              stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    write_session(session, f"http://127.0.0.1:{int(server.stdout.readline())}/ok/levels.zarr")
     command = [PARAVIEW, "--dr", *OPTIONS, f"--test-directory={OUTPUT}", f"--test-script={session}", "--exit"]
     result = subprocess.run(command, capture_output=True, text=True, timeout=150)
+    server.stdin.close()
     print(result.stdout, result.stderr)
     check(result.returncode == 0, "every step of the session can be done")
     said = result.stdout + result.stderr
