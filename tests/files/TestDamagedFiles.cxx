@@ -226,8 +226,8 @@ TEST_F(DamagedFile, WithAWrongHeaderSaysWhatIsWrong)
   ExpectWords(
     Read(write("e.txt", "no volume")), { "e.txt", "unknown format", "Zarr", "Save Data" });
   ExpectWords(Read(write("e.h5", "")), { "e.h5", "is empty" });
-  ExpectWords(
-    Read(write("e.zarr.zip", "PK\x03\x04 and so on")), { "e.zarr.zip", "ZIP", "damaged ZIP archive" });
+  ExpectWords(Read(write("e.zarr.zip", "PK\x03\x04 and so on")),
+    { "e.zarr.zip", "ZIP", "damaged ZIP archive" });
   ExpectWords(Read(write("f.raw", "12345678")), { "f.raw", "has no header" });
   ExpectWords(Read(write("g.h5", "\x89HDF\r\n\x1a\n and then nothing")),
     { "g.h5", "cannot be opened as HDF5" });

@@ -100,8 +100,7 @@ std::shared_ptr<ZarrStore> ZarrStore::Make(
   {
     return MakeZarrRemote(path, goesOn);
   }
-  return FindPathKind(path) == PathKind::File ? MakeZarrZip(path)
-                                              : std::make_shared<ZarrFolders>();
+  return FindPathKind(path) == PathKind::File ? MakeZarrZip(path) : std::make_shared<ZarrFolders>();
 }
 
 bool MayBeZarr(const std::string& path)
