@@ -44,6 +44,7 @@ with Messages() as messages:
     display = show(source, view, [0.7], "f")
     place_camera(view)
     picture = render(view, "Automatic")
+    check_report(display, "Replicated")
     render(view)
 vtkLogger.EndLogToFile(log)
 check(not any(word in messages.text for word in ("DSM Ray Tracer", "ERR", "arning")),
@@ -53,7 +54,6 @@ with open(log, encoding="utf-8") as text:
     said = text.read()
 check(said.count("memory organization is replicated: all data take") == (1 if several else 0),
       "what was chosen is logged once: " + said)
-check_report(display, "Replicated")
 
 # Every organization, with and without the memory of the others on the host.
 for sharing in (0, 1):

@@ -54,7 +54,7 @@ check(serve() == [9, 9], "when it ends, the page gets all")
 
 
 def count_accesses(isovalue, *steps):
-    """To bricks, of each step of a picture that nothing is known of."""
+    """To bricks, of each step of a picture."""
     simple.Render(view)
     display.DSMIsoValues = [isovalue]
     accesses = []
@@ -66,7 +66,9 @@ def count_accesses(isovalue, *steps):
     return accesses
 
 
-(at_once,) = count_accesses(150.0, 16)
+count_accesses(150.0, 16)
+display.DSMIsoValues = [130.0]
+(at_once,) = count_accesses(150.0, 16)  # some first hits are known, as below
 expected = render(view)
 display.DSMIsoValues = [130.0]
 steps = count_accesses(150.0, 1, 4, 16)

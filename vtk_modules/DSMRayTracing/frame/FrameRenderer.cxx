@@ -6,6 +6,7 @@
 #include "DSMRayTracing/frame/SceneDigest.h"
 #include "DSMRayTracing/frame/TileGrid.h"
 #include "DSMRayTracing/frame/TileSource.h"
+#include "DSMRayTracing/object/ObjectDigest.h"
 
 #include <algorithm>
 #include <chrono>
@@ -35,6 +36,16 @@ std::size_t GetBytesForHits(const dsm::BlockStore::Settings& settings)
   return settings.MemoryBytes == 0 ? MostBytesForHits
                                    : static_cast<std::size_t>(std::min<std::uint64_t>(
                                        MostBytesForHits, settings.MemoryBytes / PartsForHits));
+}
+
+/// A picture's surfaces, and how bricks are kept: statistics of another way are those of a picture that reads them.
+std::uint64_t GetHitsDigest(
+  const dsm::BlockStore& store, const Scene& scene, const FrameRequest& request)
+{
+  ObjectDigest digest;
+  digest.AddAll(GetSurfaceDigest(scene, request), store.GetOrganization(),
+    store.GetSettings().HostSharing, store.GetSettings().CacheBytes);
+  return digest.Get();
 }
 
 /// What a frame did before it was aborted.
@@ -217,7 +228,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   this->Messenger.Insist(
     [&]
     {
-      usesHits = this->Hits.Begin(GetSurfaceDigest(scene, request),
+      usesHits = this->Hits.Begin(GetHitsDigest(store, scene, request),
         TileGrid(request.Width, request.Height, request.TileSize).GetCount(),
         GetBytesForHits(store.GetSettings()), request.KeepsHits);
     });

@@ -15,14 +15,19 @@ bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool kee
     [&](const Picture& picture) { return picture.Digest == digest; });
   if (known != this->Pictures.end())
   {
+    std::transform(known->Tiles.begin(), known->Tiles.end(), known->Known.begin(),
+      [](const std::vector<TileHits>& samples)
+      { return static_cast<std::uint8_t>(samples.size()); });
     this->Pictures.splice(this->Pictures.begin(), this->Pictures, known);
   }
   else if (keeps)
   {
     std::vector<std::vector<TileHits>> empty(static_cast<std::size_t>(tiles));
+    std::vector<std::uint8_t> none(empty.size(), 0);
     this->Pictures.emplace_front();
     this->Pictures.front().Digest = digest;
     this->Pictures.front().Tiles = std::move(empty);
+    this->Pictures.front().Known = std::move(none);
   }
   else
   {

@@ -28,18 +28,24 @@ public:
   bool Begin(std::uint64_t digest, int tiles, std::size_t most, bool keeps);
 
   ///@{
-  /// During such a frame; one thread for each tile.
+  /// During such a frame; any thread.
 
-  /// The hits of the first samples of a tile, as far as they are known. They stay until the frame ends, or more are
-  /// kept.
-  const std::vector<TileHits>& Get(int tile) const
-  {
-    return this->Shown->Tiles[static_cast<std::size_t>(tile)];
-  }
+  /// How many of the first samples of a tile had known hits when the frame began.
+  int CountKnown(int tile) const { return this->Shown->Known[static_cast<std::size_t>(tile)]; }
   /// Returns whether hits of that sample would be kept.
   bool HasRoom(int sample) const
   {
     return this->Keeps && sample < MostSamples && this->Shown->Bytes < this->Most;
+  }
+  ///@}
+
+  ///@{
+  /// During such a frame; for the one thread that traces the tile.
+
+  /// The hits of a sample that was known. They stay until more are kept.
+  const TileHits& Get(int tile, int sample) const
+  {
+    return this->Shown->Tiles[static_cast<std::size_t>(tile)][static_cast<std::size_t>(sample)];
   }
   /// Keeps those of the samples after the known ones, as far as there is room.
   void Keep(int tile, std::vector<TileHits> hits);
@@ -50,6 +56,7 @@ private:
   {
     std::uint64_t Digest;
     std::vector<std::vector<TileHits>> Tiles; ///< by number, then sample
+    std::vector<std::uint8_t> Known;          ///< CountKnown
     std::atomic<std::size_t> Bytes{ 0 };
   };
 

@@ -137,17 +137,16 @@ TileSampler::FirstHits TileSampler::FindFirstHits(const Tile& tile) const
   {
     return hits;
   }
-  const std::vector<TileHits>& known = this->Hits->Get(tile.Index);
+  const int known = this->Hits->CountKnown(tile.Index);
   const std::size_t pixels = static_cast<std::size_t>(tile.Width) * tile.Height;
   const int end = this->Request.FirstSample + this->Request.Samples;
   for (int sample = this->Request.FirstSample; sample < end; ++sample)
   {
-    const auto number = static_cast<std::size_t>(sample);
-    if (number < known.size())
+    if (sample < known)
     {
-      hits.Known.push_back(&known[number]);
+      hits.Known.push_back(&this->Hits->Get(tile.Index, sample));
     }
-    else if (number == known.size() + hits.Kept.size() && this->Hits->HasRoom(sample))
+    else if (sample == known + static_cast<int>(hits.Kept.size()) && this->Hits->HasRoom(sample))
     {
       hits.Kept.emplace_back(pixels);
     }
@@ -159,7 +158,8 @@ TileSampler::FirstHits TileSampler::FindFirstHits(const Tile& tile) const
 bool TileSampler::Prefetch(const Tile& tile) const
 {
   bool anyAbsent = false;
-  if (this->Hits && this->FindFirstHits(tile).AreKnown)
+  if (this->Hits &&
+    this->Hits->CountKnown(tile.Index) >= this->Request.FirstSample + this->Request.Samples)
   {
     return anyAbsent;
   }
