@@ -166,6 +166,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
   vol::HttpLimits limits;
   limits.Seconds = 2;
   limits.Attempts = 1;
+  limits.ErrorSeconds = 0.0;
   vol::HttpLimits::Set(limits);
   const vol::HttpClient::Request request = MakeRequest(bytes[0]);
   server->SetAnswer(bytes + 1, count - 1);

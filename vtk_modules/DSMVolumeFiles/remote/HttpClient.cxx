@@ -50,8 +50,6 @@ constexpr long LeastBytesPerSecond = 100;
 constexpr long MostSecondsOfTransfer = 600;
 constexpr int MostRedirects = 5;
 constexpr double LongestPause = 10.0; ///< that a server may ask for
-/// A server that did not answer is asked only once in a while, so that a reader that opens again soon fails soon.
-constexpr std::chrono::seconds DeadTime(10);
 constexpr std::size_t MostKeptPools = 32;
 constexpr long MostIdleConnections = 4; ///< of each
 constexpr int PollMilliseconds = 100;   ///< from one look at the caller's wishes to the next
@@ -159,7 +157,6 @@ public:
   {
     std::string Failure;
     bool MayPass = false;   ///< another attempt may go well
-    bool IsSilent = false;  ///< nothing came from the server
     bool IsRefusal = false; ///< 401 or 403
     std::string Redirect;
   };
@@ -190,7 +187,6 @@ public:
         result.Failure.pop_back();
       }
       result.MayPass = MayPass(code);
-      result.IsSilent = this->Head.Status == 0;
       if (code == CURLE_COULDNT_RESOLVE_HOST)
       {
         result.Failure += ". Is this computer online, and is the name right?";
@@ -474,34 +470,39 @@ std::string GetOriginOf(const std::string& address)
                                    : ToLower(address.substr(0, address.find('/', host + 3)));
 }
 
-/// Servers that did not answer a moment ago.
-class DeadServers
+/// Errors of a moment ago: a reader that opens again soon fails at once.
+class RecentErrors
 {
 public:
-  static bool Has(const std::string& address)
+  /// Throws dsm::Error where the same request failed a moment ago.
+  static void Check(const std::string& key, double seconds)
   {
     const std::lock_guard<std::mutex> lock(Guard);
-    const auto known = Times.find(GetOriginOf(address));
-    return known != Times.end() && HttpClock::now() - known->second < DeadTime;
+    const auto known = Errors.find(key);
+    if (known != Errors.end() &&
+      HttpClock::now() - known->second.At < std::chrono::duration<double>(seconds))
+    {
+      throw FileError(known->second.Error);
+    }
   }
-  static void Note(const std::string& address, bool isDead)
+  static void Note(const std::string& key, const FileError& error)
   {
     const std::lock_guard<std::mutex> lock(Guard);
-    if (!isDead)
+    if (Errors.size() > 1000)
     {
-      Times.erase(GetOriginOf(address));
-      return;
+      Errors.clear();
     }
-    if (Times.size() > 1000)
-    {
-      Times.clear();
-    }
-    Times[GetOriginOf(address)] = HttpClock::now();
+    Errors.insert_or_assign(key, Entry{ error, HttpClock::now() });
   }
 
 private:
+  struct Entry
+  {
+    FileError Error;
+    HttpClock::time_point At;
+  };
   static inline std::mutex Guard;
-  static inline std::map<std::string, HttpClock::time_point> Times;
+  static inline std::map<std::string, Entry> Errors;
 };
 
 /// Returns why the server may not lead from one address to another; empty: it may.
@@ -572,7 +573,7 @@ Transfer::Result Follow(const RemotePlace& place, const HttpClient::Request& req
       : CheckRedirect(address, result.Redirect);
     if (!refused.empty())
     {
-      return { refused, false, false, false, {} };
+      return { refused, false, false, {} };
     }
     address = result.Redirect;
   }
@@ -600,6 +601,8 @@ HttpClient::Answer HttpClient::Get(
 {
   const HttpLimits limits = HttpLimits::Get();
   const std::string address = place.GetAddress(request.Path);
+  const std::string key = address + (request.Range ? "#" + request.Range->Write() : "");
+  RecentErrors::Check(key, limits.ErrorSeconds);
   const auto begin = HttpClock::now();
   double pause = limits.FirstPause;
   for (int attempt = 1;; ++attempt)
@@ -609,21 +612,22 @@ HttpClient::Answer HttpClient::Get(
     const Transfer::Result result = Follow(place, request, goesOn, answer, retryAfter);
     if (result.Failure.empty())
     {
-      DeadServers::Note(address, false);
       return answer;
     }
     const double wait = std::max(Spread(pause), std::min(retryAfter, LongestPause));
     const std::chrono::duration<double> taken = HttpClock::now() - begin;
-    if (!result.MayPass || attempt >= limits.Attempts || taken.count() + wait > limits.Seconds ||
-      DeadServers::Has(address))
+    if (!result.MayPass || attempt >= limits.Attempts || taken.count() + wait > limits.Seconds)
     {
-      DeadServers::Note(address, result.IsSilent);
       const FileError error(HideCredentials(request.Path),
         "cannot be read: " + result.Failure +
           (attempt > 1 ? " (" + std::to_string(attempt) + " attempts)." : "."));
       if (result.IsRefusal)
       {
         throw Refusal(error.what());
+      }
+      if (result.MayPass)
+      {
+        RecentErrors::Note(key, error);
       }
       throw error;
     }

@@ -22,7 +22,8 @@ struct HttpLimits
   int Seconds = 15;
   /// Attempts in all, where a failure may pass; none begins later than Seconds after the first one.
   int Attempts = 5;
-  double FirstPause = 0.25; ///< in seconds; each further pause is twice as long
+  double ErrorSeconds = 3.0; ///< how long an error is the answer to the same request
+  double FirstPause = 0.25;  ///< in seconds; each further pause is twice as long
 
   /// The process's limits. $DSM_HTTP_SECONDS replaces Seconds.
   static HttpLimits Get();

@@ -38,18 +38,14 @@ std::chrono::seconds GetLongestClaim()
   return std::chrono::seconds(2 * HttpLimits::Get().Seconds);
 }
 
-/// Returns the name of what is kept of a key.
-std::string NameKept(const std::string& path, const std::optional<HttpRange>& range)
-{
-  return range ? path + "#" + range->Write() : path;
-}
-
 /// A key in memory.
 class FetchedKey final : public StampedSource
 {
 public:
-  FetchedKey(std::string path, ByteBuffer bytes, std::uint64_t stamp)
+  /// `name`: of what is kept of it.
+  FetchedKey(std::string path, std::string name, ByteBuffer bytes, std::uint64_t stamp)
     : Path(std::move(path))
+    , Name(std::move(name))
     , Bytes(std::move(bytes))
     , Stamp(stamp)
   {
@@ -59,7 +55,7 @@ public:
   std::uint64_t GetBytes() const override { return this->Bytes.size(); }
   std::uint64_t GetStamp() const override { return this->Stamp; }
   void Prefetch(std::vector<Piece>) const override {}
-  void Doubt() const override { KeptAnswers::GetShared().Drop(this->Path); }
+  void Doubt() const override { KeptAnswers::GetShared().Drop(this->Name); }
 
   void Read(const std::vector<Piece>& pieces, std::byte* out) const override
   {
@@ -76,6 +72,7 @@ public:
 
 private:
   std::string Path;
+  std::string Name;
   ByteBuffer Bytes;
   std::uint64_t Stamp;
 };
@@ -98,7 +95,7 @@ public:
   {
     this->Offset = range.FromEnd ? this->Whole.Total - bytes.size() : range.Offset;
     this->Bytes = std::move(bytes);
-    this->Names.push_back(NameKept(this->Path, range));
+    this->Names.push_back(this->Keys->NameKept(this->Path, range));
   }
 
   const std::string& GetPath() const override { return this->Path; }
@@ -157,7 +154,7 @@ private:
     const HttpRange part{ begin, end - begin };
     {
       const std::lock_guard<std::mutex> lock(this->Guard);
-      this->Names.push_back(NameKept(this->Path, part));
+      this->Names.push_back(this->Keys->NameKept(this->Path, part));
     }
     std::optional<Answer> answer = this->Keys->Ask(this->Path, part, part.Bytes);
     if (!answer)
@@ -188,6 +185,13 @@ RemoteKeys::RemoteKeys(const std::string& url, std::function<bool()> goesOn)
   , Kept(KeptAnswers::GetShared())
   , OpenedAt(KeptAnswers::Time::clock::now())
 {
+}
+
+std::string RemoteKeys::NameKept(
+  const std::string& path, const std::optional<HttpRange>& range) const
+{
+  const std::string address = this->Place.GetAddress(path);
+  return range ? address + "#" + range->Write() : address;
 }
 
 std::uint64_t RemoteKeys::GetStampOf(const Known& known)
@@ -272,9 +276,9 @@ std::shared_ptr<const StampedSource> RemoteKeys::Fetch(
   const std::string& path, std::uint64_t most) const
 {
   std::optional<Answer> answer = this->Ask(path, {}, most);
-  return answer
-    ? std::make_shared<FetchedKey>(path, std::move(answer->Body), GetStampOf(answer->Of))
-    : nullptr;
+  return answer ? std::make_shared<FetchedKey>(
+                    path, this->NameKept(path, {}), std::move(answer->Body), GetStampOf(answer->Of))
+                : nullptr;
 }
 
 std::shared_ptr<const StampedSource> RemoteKeys::Open(

@@ -64,6 +64,8 @@ private:
   /// server sends; nothing where it says that there is none.
   std::optional<Answer> Ask(
     const std::string& path, const std::optional<HttpRange>& range, std::uint64_t most) const;
+  /// Returns the name of what is kept of a key: the address that is asked, as one bucket may be on several servers.
+  std::string NameKept(const std::string& path, const std::optional<HttpRange>& range) const;
   static std::uint64_t GetStampOf(const Known& known);
 
   RemotePlace Place;
