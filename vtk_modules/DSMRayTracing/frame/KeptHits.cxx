@@ -33,6 +33,10 @@ bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool kee
   {
     return false;
   }
+  while (this->Pictures.size() > MostPictures)
+  {
+    this->DropOldest();
+  }
   this->Shown = &this->Pictures.front();
   this->MakeRoom(0);
   return true;
@@ -53,6 +57,12 @@ void KeptHits::Keep(int tile, std::vector<TileHits> hits)
   }
 }
 
+void KeptHits::DropOldest()
+{
+  this->Bytes -= this->Pictures.back().Bytes;
+  this->Pictures.pop_back();
+}
+
 /// Takes so many bytes, from other pictures if need be. Returns whether there are as many.
 bool KeptHits::MakeRoom(std::size_t bytes)
 {
@@ -64,8 +74,7 @@ bool KeptHits::MakeRoom(std::size_t bytes)
   const std::scoped_lock lock(this->Access);
   while (this->Bytes > this->Most && this->Pictures.size() > 1)
   {
-    this->Bytes -= this->Pictures.back().Bytes;
-    this->Pictures.pop_back();
+    this->DropOldest();
   }
   if (this->Bytes <= this->Most)
   {

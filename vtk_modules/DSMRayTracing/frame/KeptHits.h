@@ -22,6 +22,9 @@ public:
   /// Samples of a pixel whose hits are kept. No square of pixels has fewer (FrameRequest::SureSamples), unless fewer
   /// are asked for.
   static constexpr int MostSamples = 4;
+  /// Pictures whose hits are kept: those of a view's two eyes, and of another view. Steps of a simulation do not come
+  /// again.
+  static constexpr std::size_t MostPictures = 4;
 
   /// Between frames. `digest`: of the surfaces and the camera (GetSurfaceDigest) of the frame that begins. `most`:
   /// bytes that are kept. Returns whether hits of that frame are known, or `keeps` them.
@@ -61,6 +64,7 @@ private:
   };
 
   bool MakeRoom(std::size_t bytes);
+  void DropOldest();
 
   std::list<Picture> Pictures; ///< the last one first
   Picture* Shown = nullptr;    ///< in the frame
