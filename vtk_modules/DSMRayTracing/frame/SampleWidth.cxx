@@ -23,13 +23,11 @@ public:
   {
   }
 
-  /// The smallest w in clip space, to which widths are inverse, of the places in the box that the picture shows;
-  /// infinite where it shows none.
-  double FindLeastW(const glm::dvec3& low, const glm::dvec3& high, int divisions = 5) const
+  /// Looks for a place in a box that the picture shows, and that has a smaller w than those before.
+  void Search(const glm::dvec3& low, const glm::dvec3& high, int divisions = 5)
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     glm::dvec4 corners[8];
-    double least = infinity;
+    double least = std::numeric_limits<double>::infinity();
     bool areAllSeen = true;
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -39,24 +37,25 @@ public:
       least = std::min(least, corners[corner].w);
       areAllSeen = areAllSeen && IsSeen(corners[corner]);
     }
-    if (this->IsBeside(corners))
+    if (least >= this->Least || IsBeside(corners))
     {
-      return infinity;
+      return;
     }
     if (areAllSeen || divisions == 0)
     {
-      return least;
+      this->Least = least;
+      return;
     }
     const glm::dvec3 half = 0.5 * (low + high);
-    double found = infinity;
     for (int part = 0; part < 8; ++part)
     {
       const glm::dvec3 upper((part & 1) != 0, (part & 2) != 0, (part & 4) != 0);
-      found = std::min(found,
-        this->FindLeastW(glm::mix(low, half, upper), glm::mix(half, high, upper), divisions - 1));
+      this->Search(glm::mix(low, half, upper), glm::mix(half, high, upper), divisions - 1);
     }
-    return found;
   }
+
+  /// The smallest w in clip space, to which widths are inverse, of the places that were found; infinite without any.
+  double GetLeastW() const { return this->Least; }
 
 private:
   static bool IsSeen(const glm::dvec4& place)
@@ -80,6 +79,7 @@ private:
   }
 
   glm::dmat4 IndexToClip;
+  double Least = std::numeric_limits<double>::infinity();
 };
 
 } // namespace
@@ -88,7 +88,9 @@ double GetSampleWidth(
   const FrameRequest& request, const glm::dmat4& indexToWorld, const glm::dvec3& last)
 {
   const glm::dmat4 indexToClip = request.WorldToClip * indexToWorld;
-  const double w = SeenBox(indexToClip).FindLeastW(glm::dvec3(0.0), last);
+  SeenBox seen(indexToClip);
+  seen.Search(glm::dvec3(0.0), last);
+  const double w = seen.GetLeastW();
   if (std::isinf(w))
   {
     return 0.0;

@@ -4,6 +4,7 @@
 #include "DSMCore/base/ByteDigest.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
+#include "DSMVolumeFiles/base/MemorySource.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
 
 #include <algorithm>
@@ -39,42 +40,20 @@ std::chrono::seconds GetLongestClaim()
 }
 
 /// A key in memory.
-class FetchedKey final : public StampedSource
+class FetchedKey final : public MemorySource
 {
 public:
   /// `name`: of what is kept of it.
   FetchedKey(std::string path, std::string name, ByteBuffer bytes, std::uint64_t stamp)
-    : Path(std::move(path))
+    : MemorySource(std::move(path), std::move(bytes), stamp)
     , Name(std::move(name))
-    , Bytes(std::move(bytes))
-    , Stamp(stamp)
   {
   }
 
-  const std::string& GetPath() const override { return this->Path; }
-  std::uint64_t GetBytes() const override { return this->Bytes.size(); }
-  std::uint64_t GetStamp() const override { return this->Stamp; }
-  void Prefetch(std::vector<Piece>) const override {}
   void Doubt() const override { KeptAnswers::GetShared().Drop(this->Name); }
 
-  void Read(const std::vector<Piece>& pieces, std::byte* out) const override
-  {
-    for (const Piece& piece : pieces)
-    {
-      if (piece.Offset > this->Bytes.size() || piece.Bytes > this->Bytes.size() - piece.Offset)
-      {
-        throw FileError(this->Path,
-          "ends at byte " + std::to_string(this->Bytes.size()) + ", where more are expected.");
-      }
-      out = std::copy_n(this->Bytes.data() + piece.Offset, piece.Bytes, out);
-    }
-  }
-
 private:
-  std::string Path;
   std::string Name;
-  ByteBuffer Bytes;
-  std::uint64_t Stamp;
 };
 
 } // namespace

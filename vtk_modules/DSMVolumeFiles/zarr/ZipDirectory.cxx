@@ -3,10 +3,10 @@
 
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/FileLimits.h"
+#include "DSMVolumeFiles/base/MemorySource.h"
 #include "DSMVolumeFiles/codec/StreamDecoder.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace vol
@@ -111,40 +111,6 @@ private:
   std::uint64_t Bytes;
 };
 
-/// Bytes that were unpacked.
-class UnpackedMember final : public StampedSource
-{
-public:
-  UnpackedMember(std::string path, std::uint64_t stamp, ByteBuffer bytes)
-    : Path(std::move(path))
-    , Stamp(stamp)
-    , Bytes(std::move(bytes))
-  {
-  }
-
-  const std::string& GetPath() const override { return this->Path; }
-  std::uint64_t GetBytes() const override { return this->Bytes.size(); }
-  std::uint64_t GetStamp() const override { return this->Stamp; }
-  void Read(const std::vector<Piece>& pieces, std::byte* out) const override
-  {
-    for (const Piece& piece : pieces)
-    {
-      if (piece.Bytes > this->Bytes.size() || piece.Offset > this->Bytes.size() - piece.Bytes)
-      {
-        throw FileError(this->Path, "is too short.");
-      }
-      std::copy_n(this->Bytes.data() + piece.Offset, piece.Bytes, out);
-      out += piece.Bytes;
-    }
-  }
-  void Prefetch(std::vector<Piece>) const override {}
-
-private:
-  std::string Path;
-  std::uint64_t Stamp;
-  ByteBuffer Bytes;
-};
-
 } // namespace
 
 ZipDirectory::ZipDirectory(std::shared_ptr<const StampedSource> archive)
@@ -217,7 +183,7 @@ std::shared_ptr<const StampedSource> ZipDirectory::Open(
     this->Archive->Doubt();
     throw FileError(path, "is damaged: its deflate stream does not agree with its checksum.");
   }
-  return std::make_shared<const UnpackedMember>(path, this->Archive->GetStamp(), std::move(*bytes));
+  return std::make_shared<const MemorySource>(path, std::move(*bytes), this->Archive->GetStamp());
 }
 
 ZipDirectory::Place ZipDirectory::FindDirectory() const
