@@ -455,7 +455,7 @@ TEST(FrameRendererOnLoopback, PicturesOfKnownHitsAreThose)
     },
     [](rt::Scene& scene, rt::FrameRequest&) { scene.Objects.erase(scene.Objects.begin() + 1); },
   };
-  // Of the smaller memory, hits get less than a picture's.
+  // The smaller memory has no room for all hits of a picture.
   for (const auto& [ranks, memory] :
     { std::pair(2, std::uint64_t(1) << 30), std::pair(1, std::uint64_t(1) << 24) })
   {

@@ -101,7 +101,7 @@ std::shared_ptr<VolumeFile> OpenHdf(const std::string& path, const OpenOptions&)
 }
 #endif
 
-/// Of what a server has, only Zarr can be read in parts; what it has there is seen when it is opened.
+/// A server gives Zarr only, as other formats cannot be read in parts. Opening it shows what is there.
 std::shared_ptr<VolumeFile> OpenUrl(const std::string& url, const OpenOptions& options)
 {
   const std::string folder = FindZarrFolder(url);
