@@ -126,6 +126,9 @@ public:
   void Refresh(std::string_view what, const std::shared_ptr<BlockSegment>& segment,
     const std::vector<bool>& changed);
 
+  /// Local: how many of Publish, Update and Refresh there were.
+  std::uint64_t CountPublications() const { return this->Publications; }
+
   /// Collective in order (no message is exchanged), between frames.
   void Retire(const std::shared_ptr<BlockSegment>& segment);
 

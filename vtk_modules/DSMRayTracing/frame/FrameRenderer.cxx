@@ -38,14 +38,17 @@ std::size_t GetBytesForHits(const dsm::BlockStore::Settings& settings)
                                        MostBytesForHits, settings.MemoryBytes / PartsForHits));
 }
 
-/// A picture's surfaces, and how bricks are kept: statistics of another way are those of a picture that reads them.
-std::uint64_t GetHitsDigest(
+/// All that the first hits of a picture's rays depend on, and how bricks are kept: statistics of another way are those
+/// of a picture that reads them.
+KeptHits::Key GetHitsKey(
   const dsm::BlockStore& store, const Scene& scene, const FrameRequest& request)
 {
   ObjectDigest digest;
-  digest.AddAll(GetSurfaceDigest(scene, request), store.GetOrganization(),
-    store.GetSettings().HostSharing, store.GetSettings().CacheBytes);
-  return digest.Get();
+  const std::uint64_t shapes = GetShapeDigest(scene);
+  digest.AddAll(request.Width, request.Height, request.TileSize, request.WorldToClip,
+    request.Limits, shapes, store.GetOrganization(), store.GetSettings().HostSharing,
+    store.GetSettings().CacheBytes);
+  return { digest.Get(), shapes, store.CountPublications() };
 }
 
 /// What a frame did before it was aborted.
@@ -228,7 +231,7 @@ void FrameRenderer::RenderTiles(dsm::BlockStore& store, const Scene& scene,
   this->Messenger.Insist(
     [&]
     {
-      usesHits = this->Hits.Begin(GetHitsDigest(store, scene, request),
+      usesHits = this->Hits.Begin(GetHitsKey(store, scene, request),
         TileGrid(request.Width, request.Height, request.TileSize).GetCount(),
         GetBytesForHits(store.GetSettings()), request.KeepsHits);
     });

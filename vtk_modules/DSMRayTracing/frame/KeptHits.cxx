@@ -2,17 +2,30 @@
 #include "DSMRayTracing/frame/KeptHits.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace rt
 {
 
-bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool keeps)
+bool KeptHits::Begin(const Key& key, int tiles, std::size_t most, bool keeps)
 {
+  const bool isNewStep =
+    this->Last.Data != 0 && key.Data != this->Last.Data && key.Shapes != this->Last.Shapes;
+  for (auto picture = this->Pictures.begin(); picture != this->Pictures.end();)
+  {
+    const auto next = std::next(picture);
+    if (key.Data != this->Last.Data && picture->Shapes != key.Shapes)
+    {
+      this->Drop(picture);
+    }
+    picture = next;
+  }
+  this->Last = key;
   this->Most = most;
-  this->Keeps = keeps;
+  this->Keeps = keeps && !isNewStep;
   const auto known = std::find_if(this->Pictures.begin(), this->Pictures.end(),
-    [&](const Picture& picture) { return picture.Digest == digest; });
+    [&](const Picture& picture) { return picture.Digest == key.Picture; });
   if (known != this->Pictures.end())
   {
     std::transform(known->Tiles.begin(), known->Tiles.end(), known->Known.begin(),
@@ -20,12 +33,13 @@ bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool kee
       { return static_cast<std::uint8_t>(samples.size()); });
     this->Pictures.splice(this->Pictures.begin(), this->Pictures, known);
   }
-  else if (keeps)
+  else if (this->Keeps)
   {
     std::vector<std::vector<TileHits>> empty(static_cast<std::size_t>(tiles));
     std::vector<std::uint8_t> none(empty.size(), 0);
     this->Pictures.emplace_front();
-    this->Pictures.front().Digest = digest;
+    this->Pictures.front().Digest = key.Picture;
+    this->Pictures.front().Shapes = key.Shapes;
     this->Pictures.front().Tiles = std::move(empty);
     this->Pictures.front().Known = std::move(none);
   }
@@ -35,7 +49,7 @@ bool KeptHits::Begin(std::uint64_t digest, int tiles, std::size_t most, bool kee
   }
   while (this->Pictures.size() > MostPictures)
   {
-    this->DropOldest();
+    this->Drop(std::prev(this->Pictures.end()));
   }
   this->Shown = &this->Pictures.front();
   this->MakeRoom(0);
@@ -57,10 +71,10 @@ void KeptHits::Keep(int tile, std::vector<TileHits> hits)
   }
 }
 
-void KeptHits::DropOldest()
+void KeptHits::Drop(std::list<Picture>::iterator picture)
 {
-  this->Bytes -= this->Pictures.back().Bytes;
-  this->Pictures.pop_back();
+  this->Bytes -= picture->Bytes;
+  this->Pictures.erase(picture);
 }
 
 /// Takes so many bytes, from other pictures if need be. Returns whether there are as many.
@@ -74,7 +88,7 @@ bool KeptHits::MakeRoom(std::size_t bytes)
   const std::scoped_lock lock(this->Access);
   while (this->Bytes > this->Most && this->Pictures.size() > 1)
   {
-    this->DropOldest();
+    this->Drop(std::prev(this->Pictures.end()));
   }
   if (this->Bytes <= this->Most)
   {

@@ -22,13 +22,21 @@ public:
   /// Samples of a pixel whose hits are kept. No square of pixels has fewer (FrameRequest::SureSamples), unless fewer
   /// are asked for.
   static constexpr int MostSamples = 4;
-  /// Pictures whose hits are kept: those of a view's two eyes, and of another view. Steps of a simulation do not come
-  /// again.
+  /// Pictures whose hits are kept: those of a view's two eyes, and of another view.
   static constexpr std::size_t MostPictures = 4;
 
-  /// Between frames. `digest`: of the surfaces and the camera (GetSurfaceDigest) of the frame that begins. `most`:
-  /// bytes that are kept. Returns whether hits of that frame are known, or `keeps` them.
-  bool Begin(std::uint64_t digest, int tiles, std::size_t most, bool keeps);
+  /// What the hits of a frame are of.
+  struct Key
+  {
+    std::uint64_t Picture; ///< digest of surfaces and camera
+    std::uint64_t Shapes;  ///< digest of the surfaces (GetShapeDigest)
+    std::uint64_t Data;    ///< BlockStore::CountPublications
+  };
+
+  /// Between frames. `key`: of the frame that begins. `most`: bytes that are kept. Returns whether hits of that frame
+  /// are known, or `keeps` them. Steps of a simulation do not come again: when data have come since the last frame,
+  /// hits of other surfaces leave, and those of a picture of new surfaces are not kept.
+  bool Begin(const Key& key, int tiles, std::size_t most, bool keeps);
 
   ///@{
   /// During such a frame; any thread.
@@ -58,14 +66,16 @@ private:
   struct Picture
   {
     std::uint64_t Digest;
+    std::uint64_t Shapes;
     std::vector<std::vector<TileHits>> Tiles; ///< by number, then sample
     std::vector<std::uint8_t> Known;          ///< CountKnown
     std::atomic<std::size_t> Bytes{ 0 };
   };
 
   bool MakeRoom(std::size_t bytes);
-  void DropOldest();
+  void Drop(std::list<Picture>::iterator picture);
 
+  Key Last{};                  ///< of the last frame
   std::list<Picture> Pictures; ///< the last one first
   Picture* Shown = nullptr;    ///< in the frame
   std::mutex Access;           ///< to pictures that are not

@@ -58,11 +58,9 @@ std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request)
   return digest.Get();
 }
 
-std::uint64_t GetSurfaceDigest(const Scene& scene, const FrameRequest& request)
+std::uint64_t GetShapeDigest(const Scene& scene)
 {
   ObjectDigest digest;
-  digest.AddAll(
-    request.Width, request.Height, request.TileSize, request.WorldToClip, request.Limits);
   for (const SceneObject& object : scene.Objects)
   {
     digest.Add(object.index());

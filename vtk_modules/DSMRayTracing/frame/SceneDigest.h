@@ -15,8 +15,8 @@ namespace rt
 /// their data. Valid within one process.
 std::uint64_t GetSceneDigest(const Scene& scene, const FrameRequest& request);
 
-/// The same of all that the first hits of a picture's rays depend on.
-std::uint64_t GetSurfaceDigest(const Scene& scene, const FrameRequest& request);
+/// The same of the shapes of a scene's objects alone.
+std::uint64_t GetShapeDigest(const Scene& scene);
 
 } // namespace rt
 
