@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/ext/vector_int3_sized.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <cstdint>
 
@@ -27,6 +28,15 @@ struct Box
     return size.x * size.y * size.z;
   }
   bool IsEmpty() const { return this->GetCount() == 0; }
+  bool Has(const Index3& index) const
+  {
+    return glm::all(glm::greaterThanEqual(index, this->Min)) &&
+      glm::all(glm::lessThan(index, this->Max));
+  }
+  bool operator==(const Box& other) const
+  {
+    return this->Min == other.Min && this->Max == other.Max;
+  }
 };
 
 inline Box Intersect(const Box& a, const Box& b)

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace bricks
@@ -133,6 +135,23 @@ bool VoxelIndex::IsValid() const
   return this->Survey.IsValid(bricks * edge * edge * edge) &&
     std::none_of(this->Bricks.begin(), this->Bricks.end(),
       [](const ValueRange& range) { return std::isnan(range.First) || std::isnan(range.Last); });
+}
+
+VoxelIndex VoxelIndex::CreateUnknown(const BrickLattice& lattice, const IsovalueSurvey& survey)
+{
+  VoxelIndex index;
+  index.Survey = survey;
+  const ValueRange any = Dispatch(lattice.GetScalarType(),
+    [](auto zero)
+    {
+      using Limits = std::numeric_limits<decltype(zero)>;
+      using FloatLimits = std::numeric_limits<float>;
+      return std::is_floating_point_v<decltype(zero)>
+        ? ValueRange{ FloatLimits::lowest(), FloatLimits::max() }
+        : ValueRange{ static_cast<float>(Limits::lowest()), static_cast<float>(Limits::max()) };
+    });
+  index.Bricks.assign(lattice.GetBrickCount(), any);
+  return index;
 }
 
 std::vector<bool> VoxelIndex::Compare(const std::vector<dsm::ByteDigest>& digests,

@@ -26,6 +26,9 @@ struct VoxelIndex
   IsovalueSurvey Survey;                ///< over all bricks, until LeaveOutFills
   std::vector<dsm::ByteDigest> Digests; ///< digests of the bricks' bytes, by id
 
+  /// Creates the index of bricks that were not read: they may have any value of their type.
+  static VoxelIndex CreateUnknown(const BrickLattice& lattice, const IsovalueSurvey& survey);
+
   /// Which bricks are not known to have the same bytes in both, of as many.
   static std::vector<bool> Compare(const std::vector<dsm::ByteDigest>& digests,
     const std::vector<dsm::ByteDigest>& others, std::size_t bricks);

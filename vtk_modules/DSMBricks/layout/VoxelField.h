@@ -20,6 +20,8 @@ struct VoxelField
   BrickLattice Lattice;
   std::shared_ptr<dsm::BlockSegment> Segment;
   MacrocellHierarchy Hierarchy;
+  /// Cells that another field shows instead of this one; the ranges of the bricks there are empty.
+  Box Hole;
   /// Where the planes between cells are; null: at equal distances.
   std::shared_ptr<const GridPlanes> Planes;
   /// Survey of all bricks, the same on every rank; empty if the bricks have to be examined for it.

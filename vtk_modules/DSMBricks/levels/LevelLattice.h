@@ -68,11 +68,7 @@ struct LevelBrick
   int Level;
   bool HasMask; ///< some cells are no leaves
 
-  bool Has(const Index3& cell) const
-  {
-    return glm::all(glm::greaterThanEqual(cell, this->Cells.Min)) &&
-      glm::all(glm::lessThan(cell, this->Cells.Max));
-  }
+  bool Has(const Index3& cell) const { return this->Cells.Has(cell); }
 };
 
 /// How the leaves of all levels are cut into bricks. A brick lies in one cube of cells of its level; its bounds are

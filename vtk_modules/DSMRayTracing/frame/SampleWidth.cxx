@@ -2,6 +2,8 @@
 #include "DSMRayTracing/frame/SampleWidth.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
@@ -82,6 +84,21 @@ private:
   double Least = std::numeric_limits<double>::infinity();
 };
 
+/// Of places at w = 1.
+double FindWidth(
+  const FrameRequest& request, const glm::dmat4& indexToClip, const glm::dvec3& steps)
+{
+  double width = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // Within the picture, x / w and y / w are from -1 to 1.
+    const glm::dvec4 step = steps[axis] * glm::abs(indexToClip[axis]);
+    width = std::max(width,
+      0.5 * std::hypot(request.Width * (step.x + step.w), request.Height * (step.y + step.w)));
+  }
+  return width;
+}
+
 } // namespace
 
 double GetSampleWidth(
@@ -95,15 +112,87 @@ double GetSampleWidth(
   {
     return 0.0;
   }
-  double width = 0.0;
+  const double width = FindWidth(request, indexToClip, glm::dvec3(1.0));
+  return w > 0.0 ? width / w : std::numeric_limits<double>::infinity();
+}
+
+SeenPart::SeenPart(
+  const FrameRequest& request, const glm::dmat4& indexToWorld, const glm::dvec3& last)
+  : Request(request)
+  , IndexToClip(request.WorldToClip * indexToWorld)
+  , Last(last)
+{
+}
+
+double SeenPart::GetWidth(const glm::dvec3& step) const
+{
+  return FindWidth(this->Request, this->IndexToClip, step);
+}
+
+std::optional<SeenPart::Bounds> SeenPart::Find(double depth) const
+{
+  // In parts of the lattice's size, as the points p with dot(plane, (p, 1)) >= 0.
+  const glm::dvec3 size = glm::max(this->Last, glm::dvec3(1.0));
+  const auto scale = [&](const glm::dvec4& plane)
+  {
+    const glm::dvec4 scaled(glm::dvec3(plane) * size, plane.w);
+    const double length = glm::length(glm::dvec3(scaled));
+    return length > 0.0 ? scaled / length : scaled;
+  };
+  const glm::dmat4 rows = glm::transpose(this->IndexToClip);
+  std::vector<glm::dvec4> planes;
   for (int axis = 0; axis < 3; ++axis)
   {
-    // Within the picture, x / w and y / w are from -1 to 1.
-    const glm::dvec4 step = glm::abs(indexToClip[axis]);
-    width = std::max(width,
-      0.5 * std::hypot(request.Width * (step.x + step.w), request.Height * (step.y + step.w)));
+    glm::dvec4 lower(0.0);
+    lower[axis] = 1.0;
+    planes.push_back(lower);
+    planes.push_back(glm::dvec4(-glm::dvec3(lower), this->Last[axis] / size[axis]));
+    planes.push_back(scale(rows[3] + rows[axis]));
+    planes.push_back(scale(rows[3] - rows[axis]));
   }
-  return w > 0.0 ? width / w : std::numeric_limits<double>::infinity();
+  if (std::isfinite(depth))
+  {
+    planes.push_back(scale(glm::dvec4(0.0, 0.0, 0.0, depth) - rows[3]));
+  }
+  // Every corner of the body is where three of the planes meet.
+  std::optional<Bounds> bounds;
+  const auto add = [&](const glm::dvec3& corner)
+  {
+    const glm::dvec3 place = corner * size;
+    const double w = glm::dot(rows[3], glm::dvec4(place, 1.0));
+    bounds = bounds ? Bounds{ glm::min(bounds->Lower, place), glm::max(bounds->Upper, place),
+      std::min(bounds->Nearest, w), std::max(bounds->Farthest, w) }
+                    : Bounds{ place, place, w, w };
+  };
+  constexpr double slack = 1e-9;
+  for (std::size_t first = 0; first < planes.size(); ++first)
+  {
+    for (std::size_t second = first + 1; second < planes.size(); ++second)
+    {
+      for (std::size_t third = second + 1; third < planes.size(); ++third)
+      {
+        const glm::dvec3 a(planes[first]);
+        const glm::dvec3 b(planes[second]);
+        const glm::dvec3 c(planes[third]);
+        const double volume = glm::dot(a, glm::cross(b, c));
+        if (std::abs(volume) < 1e-12)
+        {
+          continue;
+        }
+        const glm::dvec3 corner =
+          -(planes[first].w * glm::cross(b, c) + planes[second].w * glm::cross(c, a) +
+            planes[third].w * glm::cross(a, b)) /
+          volume;
+        if (std::all_of(planes.begin(), planes.end(),
+              [&](const glm::dvec4& plane)
+              { return glm::dot(plane, glm::dvec4(corner, 1.0)) >= -slack; }))
+        {
+          add(corner);
+        }
+      }
+    }
+  }
+  return bounds;
 }
 
 } // namespace rt

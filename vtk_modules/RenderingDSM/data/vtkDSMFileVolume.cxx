@@ -316,9 +316,7 @@ bool vtkDSMFileVolume::IsWhole() const
 
 int vtkDSMFileVolume::CountCoarser() const
 {
-  return this->IsWhole()
-    ? this->Values->GetFile()->GetLevels() - 1 - this->Values->GetOptions().Level
-    : 0;
+  return this->IsWhole() ? this->Values->CountCoarser() : 0;
 }
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::FindCoarser(
@@ -338,26 +336,13 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::FindCoarser(
 
 std::unique_ptr<vtkDSMFileVolume> vtkDSMFileVolume::OpenCoarser(int level) const
 {
-  const vol::FileArray& array = this->Values->GetArray();
-  vol::OpenOptions options = this->Values->GetOptions();
-  options.Level += level;
-  const auto file = vol::OpenCachedVolume(this->Values->GetFile()->GetPaths(), options);
-  const auto& arrays = file->GetArrays();
-  const auto found = std::find_if(arrays.begin(), arrays.end(),
-    [&](const vol::FileArray& one)
-    {
-      return one.Name == array.Name && one.OnCells == array.OnCells && one.Type == array.Type &&
-        one.Components == array.Components && one.Valid == array.Valid;
-    });
-  if (found == arrays.end() || this->Values->GetStep() >= file->GetSteps())
+  const auto values = this->Values->OpenCoarser(level);
+  if (!values)
   {
     return nullptr;
   }
-  std::unique_ptr<vtkDSMFileVolume> volume(new vtkDSMFileVolume(
-    std::make_shared<vtkDSMFileValues>(file, static_cast<std::size_t>(found - arrays.begin()),
-      this->Values->GetStep(), Box{ Index3(0), found->Grid.Samples }, vtkDSMFileValues::None,
-      options),
-    this->Component, this->OnCells, this->Valid));
+  std::unique_ptr<vtkDSMFileVolume> volume(
+    new vtkDSMFileVolume(values, this->Component, this->OnCells, this->Valid));
   // Not every file says how large a level's samples are.
   const glm::dmat4 toThis = this->GetIndexOf(*volume);
   for (int axis = 0; axis < 3; ++axis)
@@ -438,6 +423,14 @@ std::shared_ptr<const vol::FileBrickReader> vtkDSMFileVolume::CreateReader(
       }
       values->Prefetch(std::move(boxes));
     });
+}
+
+std::shared_ptr<const bricks::VoxelSource> vtkDSMFileVolume::CreateSamples(
+  bricks::ScalarType type) const
+{
+  const vol::FileSamples::Part part{ this->Values->GetBox(), this->Component, type };
+  return std::make_shared<const vol::FileSamples>(
+    this->Values->GetArrayStep(), part, vol::ChunkCache::GetShared(), true);
 }
 
 std::uint64_t vtkDSMFileVolume::GetKey(const bricks::BrickLattice& lattice) const
@@ -536,7 +529,7 @@ std::vector<std::byte> vtkDSMFileVolume::LoadIndex(const bricks::BrickLattice& l
     : this->GetKept(lattice).Load(bricks::VoxelIndex::CountBytes(bricks));
 }
 
-bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
+std::optional<bricks::VoxelIndex> vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   const bricks::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
   const std::function<void(double)>& progress) const
 {
@@ -560,7 +553,11 @@ bricks::VoxelIndex vtkDSMFileVolume::FindIndex(dsm::Messenger& messenger,
   if (known)
   {
     known->LeaveOutFills(messenger, lattice, *reader, threads);
-    return std::move(*known);
+    return known;
+  }
+  if (this->Values->IsTooLargeToRead())
+  {
+    return std::nullopt;
   }
   bricks::VoxelIndex::Pass pass;
   pass.Threads = threads;

@@ -97,6 +97,15 @@ public:
     return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
   }
 
+  /// Returns whether values of cells become those of points.
+  bool IsOfCells() const { return this->OnCells; }
+  /// Samples along each axis of one of the file's chunks.
+  const bricks::Index3& GetChunk() const { return this->Values->GetArray().Grid.ChunkSamples; }
+  /// Samples of points, as rays meet their bricks. `type`: the array's; of a magnitude Float32 or Float64.
+  std::shared_ptr<const bricks::VoxelSource> CreateSamples(bricks::ScalarType type) const;
+  /// Advises the system that samples in boxes will be read. Any thread; does not fail.
+  void Prefetch(std::vector<bricks::Box> boxes) const { this->Values->Prefetch(std::move(boxes)); }
+
   /// Bricks of the lattice. `scattered`: they are read as rays meet them, not all in turn.
   std::shared_ptr<const vol::FileBrickReader> CreateReader(
     const bricks::BrickLattice& lattice, bool scattered) const;
@@ -110,9 +119,11 @@ public:
   dsm::BlockDirectory CreateDirectory(const bricks::BrickLattice& lattice, int ranks) const;
 
   /// Collective: kept since an earlier time, or found by reading once what the ranks' own values, `own`, have not
-  /// seen of the bricks, and kept. `threads` of this rank read; `progress` as of vtkDSMVolumeData::Publish.
-  bricks::VoxelIndex FindIndex(dsm::Messenger& messenger, const bricks::BrickLattice& lattice,
-    const vtkDSMFileValues* own, int threads, const std::function<void(double)>& progress) const;
+  /// seen of the bricks, and kept; none where that takes too long
+  /// (vtkDSMFileValues::IsTooLargeToRead). `threads` of this rank read; `progress` as of vtkDSMVolumeData::Publish.
+  std::optional<bricks::VoxelIndex> FindIndex(dsm::Messenger& messenger,
+    const bricks::BrickLattice& lattice, const vtkDSMFileValues* own, int threads,
+    const std::function<void(double)>& progress) const;
 
 private:
   vtkDSMFileVolume(std::shared_ptr<const vtkDSMFileValues> values, int component, bool onCells,

@@ -4,6 +4,8 @@
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMCore/base/Error.h"
 #include "DSMCore/memory/FreedMemory.h"
+#include "DSMVolumeFiles/base/Url.h"
+#include "DSMVolumeFiles/open/OpenVolumeFile.h"
 
 #include "vtkMultiProcessController.h"
 
@@ -15,6 +17,17 @@
 
 namespace
 {
+
+/// Samples that are all read to find what values there are: of a file on a disk, and on a server. Then those of a
+/// coarser level.
+constexpr std::int64_t MostOnDisk = std::int64_t(1) << 28;
+constexpr std::int64_t MostOnServer = std::int64_t(1) << 24;
+constexpr std::int64_t MostOfCoarser = std::int64_t(1) << 24;
+
+std::int64_t CountSamples(const vol::FileArray& array)
+{
+  return bricks::Box{ bricks::Index3(0), array.Grid.Samples }.GetCount();
+}
 
 /// This rank's share of the host's cores. Not collective, so how many ranks the host has is what their launcher says;
 /// else all of them may be here.
@@ -47,6 +60,38 @@ void vtkDSMFileValues::ReadBox(const bricks::Box& box, std::byte* out) const
 {
   vol::ChunkCache::GetShared().ReadBox(
     this->Of, { box.Min + this->Box.Min, box.Max + this->Box.Min }, out);
+}
+
+std::shared_ptr<vtkDSMFileValues> vtkDSMFileValues::OpenCoarser(int level) const
+{
+  if (level > this->CountCoarser())
+  {
+    return nullptr;
+  }
+  const vol::FileArray& array = this->GetArray();
+  vol::OpenOptions options = this->Options;
+  options.Level += level;
+  const auto file = vol::OpenCachedVolume(this->Of.File->GetPaths(), options);
+  const auto& arrays = file->GetArrays();
+  const auto found = std::find_if(arrays.begin(), arrays.end(),
+    [&](const vol::FileArray& one)
+    {
+      return one.Name == array.Name && one.OnCells == array.OnCells && one.Type == array.Type &&
+        one.Components == array.Components && one.Valid == array.Valid;
+    });
+  if (found == arrays.end() || this->Of.Step >= file->GetSteps())
+  {
+    return nullptr;
+  }
+  return std::make_shared<vtkDSMFileValues>(file, static_cast<std::size_t>(found - arrays.begin()),
+    this->Of.Step, bricks::Box{ bricks::Index3(0), found->Grid.Samples }, None, options);
+}
+
+bool vtkDSMFileValues::IsTooLargeToRead() const
+{
+  return this->CountCoarser() > 0 &&
+    CountSamples(this->GetArray()) >
+    (vol::IsUrl(this->Of.File->GetPath()) ? MostOnServer : MostOnDisk);
 }
 
 void vtkDSMFileValues::Prefetch(std::vector<bricks::Box> boxes) const
@@ -87,6 +132,10 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
   {
     this->Ranges = vol::LoadRanges(this->Of, this->Box, this->IsShare);
   }
+  if (!this->Ranges && this->IsTooLargeToRead() && this->ReadCoarserRanges(goesOn))
+  {
+    return this->Ranges ? &*this->Ranges : nullptr;
+  }
   if (!this->Ranges)
   {
     this->ReadRanges(goesOn, withBricks && vol::CanLookAtBricks(this->GetArray()));
@@ -97,6 +146,26 @@ const vol::ValueRanges* vtkDSMFileValues::FindRanges(
     }
   }
   return this->Ranges ? &*this->Ranges : nullptr;
+}
+
+bool vtkDSMFileValues::ReadCoarserRanges(const std::function<bool(double)>& goesOn) const
+{
+  std::shared_ptr<const vtkDSMFileValues> coarser;
+  for (int level = 1; level <= this->CountCoarser(); ++level)
+  {
+    const auto next = this->OpenCoarser(level);
+    coarser = next ? next : coarser;
+    if (coarser && CountSamples(coarser->GetArray()) <= MostOfCoarser)
+    {
+      break;
+    }
+  }
+  const vol::ValueRanges* const ranges = coarser ? coarser->FindRanges(goesOn) : nullptr;
+  if (ranges)
+  {
+    this->Ranges = *ranges;
+  }
+  return coarser != nullptr;
 }
 
 void vtkDSMFileValues::ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const

@@ -44,6 +44,15 @@ public:
   /// Advises the system that the samples of boxes will probably be needed soon. Does not fail.
   void Prefetch(std::vector<bricks::Box> boxes) const;
 
+  /// The array at a coarser level of the file, with all samples of that level; the first one is 1. Null where there
+  /// is no such level, or it has no such array. Throws dsm::Error.
+  std::shared_ptr<vtkDSMFileValues> OpenCoarser(int level) const;
+  /// Returns the number of levels below the one that was opened.
+  int CountCoarser() const { return this->Of.File->GetLevels() - 1 - this->Options.Level; }
+  /// Returns whether the file has coarser levels, and reading all of this array takes long: then ranges are those of a
+  /// coarser level.
+  bool IsTooLargeToRead() const;
+
   /// The part is what a rank has of all of the array: FindRanges may find those of more (vol::LoadRanges).
   void SetShare(bool isShare) { this->IsShare = isShare; }
 
@@ -63,7 +72,8 @@ public:
     return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
   }
 
-  /// Returns the ranges of all values; computed on the first call, unless they were kept. Returns
+  /// Returns the ranges of all values; computed on the first call, unless they were kept. Those of an array that
+  /// IsTooLargeToRead are of a coarser level. Returns
   /// null when `goesOn` returns false. `withBricks`: the values are also examined as bricks in the
   /// same pass, if possible (vol::LookThrough). Throws dsm::Error.
   const vol::ValueRanges* FindRanges(
@@ -74,6 +84,8 @@ public:
 private:
   /// Under the lock; leaves Ranges unset when `goesOn` returns false.
   void ReadRanges(const std::function<bool(double)>& goesOn, bool withBricks) const;
+  /// Likewise, of a coarser level. Returns whether there is one.
+  bool ReadCoarserRanges(const std::function<bool(double)>& goesOn) const;
 
   vol::ArrayStep Of;
   int NextStep;

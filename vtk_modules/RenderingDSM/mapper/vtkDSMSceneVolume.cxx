@@ -400,22 +400,26 @@ int vtkDSMSceneVolume::CountCoarser() const
   return levels;
 }
 
-int vtkDSMSceneVolume::FindLevel(const rt::FrameRequest& request, double pixels)
+int vtkDSMSceneVolume::FindLevel(const rt::FrameRequest& request, double pixels, bool moving)
 {
   int level = this->CountCoarser();
   if (level == 0)
   {
     return level;
   }
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const glm::dmat4 dataToWorld = this->FindDataToWorld();
   const auto isFine = [&](const std::shared_ptr<vtkDSMPartValues>& values)
   {
     return !values ||
       rt::GetSampleWidth(request, dataToWorld * values->GetIndexToData(),
         glm::dvec3(values->CountSlices() - bricks::Index3(1))) <= pixels;
   };
-  for (; level > 0; --level)
+  int least = moving ? this->ChosenLevel : 0;
+  for (const auto& values : this->GetIso()->GetParts())
+  {
+    least = values ? std::max(least, values->GetLevel()) : least; // it stands in for finer ones
+  }
+  for (; level > least; --level)
   {
     const vtkDSMVolumeData::Values& parts = this->GetIso()->GetParts(level);
     if (std::all_of(parts.begin(), parts.end(), isFine))
@@ -423,7 +427,89 @@ int vtkDSMSceneVolume::FindLevel(const rt::FrameRequest& request, double pixels)
       break;
     }
   }
-  return level;
+  return this->ChosenLevel = level;
+}
+
+glm::dmat4 vtkDSMSceneVolume::FindDataToWorld() const
+{
+  this->Prop->ComputeMatrix();
+  return vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+}
+
+const vtkDSMNestedLevels* vtkDSMSceneVolume::FindNested() const
+{
+  const vtkDSMNestedLevels* first = nullptr;
+  for (const auto& published : this->Arrays)
+  {
+    const vtkDSMNestedLevels* const nested =
+      published->Publication ? vtkDSMVolumeData::FindNested(*published->Publication) : nullptr;
+    if (!nested || (first && first->GetCount() != nested->GetCount()))
+    {
+      return nullptr;
+    }
+    first = first ? first : nested;
+  }
+  return first;
+}
+
+std::uint64_t vtkDSMSceneVolume::ChooseBoxes(
+  const rt::FrameRequest& request, double pixels, bool moving)
+{
+  const vtkDSMNestedLevels* const nested = this->FindNested();
+  if (!nested)
+  {
+    this->WantedBoxes.clear();
+  }
+  else if (!moving || this->ShownBoxes.empty())
+  {
+    const vtkDSMPartValues& values = *this->GetIso()->GetParts().front();
+    // The finest level is there as a whole, if it is small enough.
+    const bool isWhole = pixels <= 0.0 && values.GetLevel() == 0;
+    this->WantedBoxes = isWhole
+      ? vtkDSMNestedLevels::Boxes()
+      : nested->FindBoxes(request, this->FindDataToWorld() * values.GetSlicesToData(), pixels);
+  }
+  bricks::ByteHash hash;
+  for (const bricks::Box& box : this->WantedBoxes)
+  {
+    hash.Add(&box, sizeof(box));
+  }
+  return this->WantedBoxes.empty() ? 0 : hash.Get();
+}
+
+void vtkDSMSceneVolume::TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>&)
+{
+  if (!this->NeedsBoxes())
+  {
+    return;
+  }
+  this->ShownBoxes.clear();
+  try
+  {
+    for (const auto& published : this->Arrays)
+    {
+      const vtkDSMVolumeData::Values old = std::move(published->Boxed);
+      published->Boxed.clear();
+      if (!this->WantedBoxes.empty())
+      {
+        published->Boxed = this->Data->PublishBoxes(*published->Publication, this->WantedBoxes,
+          this->MakeRequest(
+            published->Choice, published == this->GetIso() ? "isosurface array" : "color array"),
+          old);
+      }
+    }
+    this->ShownBoxes = this->WantedBoxes;
+  }
+  catch (const dsm::Error& error)
+  {
+    for (const auto& published : this->Arrays)
+    {
+      published->Boxed.clear();
+    }
+    this->WantedBoxes.clear();
+    this->Messages.push_back(
+      std::string("The picture has a coarser level than it could show: ") + error.what());
+  }
 }
 
 void vtkDSMSceneVolume::SuggestIsovalue(dsm::Messenger& messenger)
@@ -474,7 +560,7 @@ void vtkDSMSceneVolume::SetColors(rt::IsosurfaceLook& look)
 std::shared_ptr<const rt::BlockLooks> vtkDSMSceneVolume::CreateBlockLooks(std::size_t part) const
 {
   std::vector<rt::BlockLooks::Block> blocks;
-  for (const vtkDSMPart::Block& block : this->Data->GetParts()[part]->GetBlocks())
+  for (const vtkDSMPart::Block& block : this->Data->GetParts()[this->GetPart(part)]->GetBlocks())
   {
     rt::BlockLooks::Look look;
     if (block.Look.Color)
@@ -515,8 +601,7 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
     this->AddMedia(look, scene);
     return;
   }
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const glm::dmat4 dataToWorld = this->FindDataToWorld();
   if (this->Mapper->GetSlicing())
   {
     this->AddSlices(look, dataToWorld, scene);

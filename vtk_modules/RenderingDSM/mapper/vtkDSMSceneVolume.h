@@ -36,7 +36,10 @@ public:
   void Update(const std::shared_ptr<vtkDSMRankGroup>& group, bool newData) override;
   void TakeCoarser(const std::shared_ptr<vtkDSMRankGroup>& group, bool wanted) override;
   int CountCoarser() const override;
-  int FindLevel(const rt::FrameRequest& request, double pixels) override;
+  int FindLevel(const rt::FrameRequest& request, double pixels, bool moving) override;
+  std::uint64_t ChooseBoxes(const rt::FrameRequest& request, double pixels, bool moving) override;
+  bool NeedsBoxes() const override { return !(this->WantedBoxes == this->ShownBoxes); }
+  void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group) override;
   /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;
   void ExtractIsosurfaces(
@@ -57,6 +60,7 @@ private:
     unsigned RetryVersion = 0;                                ///< the group's when it was tried
     std::shared_ptr<const vtkDSMVolumeData::Coarser> Coarser; ///< null until they are wanted
     std::string CoarserFailure;
+    vtkDSMVolumeData::Values Boxed; ///< of the levels' boxes that are shown
     /// Returns whether this is the result of publishing the array, and publishing it again would
     /// give the same.
     bool IsOf(const vtkDSMVolumeData::Choice& choice, unsigned retryVersion) const;
@@ -88,6 +92,7 @@ private:
   /// Collective. Finds the isovalue for a first look at the array, unless the last one still suits its values.
   void SuggestIsovalue(dsm::Messenger& messenger);
   bool LacksSuggestion() const;
+  glm::dmat4 FindDataToWorld() const;
   vtkDSMVolumeLook GetLook() const { return { this->Mapper, this->Prop }; }
   /// Returns the shown arrays among the available ones: see vtkDSMVolumeLook::GetShown.
   std::vector<vtkDSMVolumeData::Choice> GetShown() const;
@@ -106,12 +111,20 @@ private:
   /// Returns the array whose values the colors represent: slices alone, and most media, are colored
   /// by their own array.
   const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
+  /// Returns whether each of the levels' boxes is shown as a part.
+  bool ShowsBoxes() const { return !this->ShownBoxes.empty() && this->GetCoarser() == 0; }
+  /// Returns the levels of which all arrays have boxes; null: none.
+  const vtkDSMNestedLevels* FindNested() const;
   /// Returns the values of the parts at the level of detail that is shown.
   const vtkDSMVolumeData::Values& GetParts(const Published& array) const
   {
-    return array.GetParts(std::min(this->GetCoarser(), this->CountCoarser()));
+    return this->ShowsBoxes() ? array.Boxed
+                              : array.GetParts(std::min(this->GetCoarser(), this->CountCoarser()));
   }
-  /// Calls `visit(field, part)` for each part of the dataset that has the array, in their order.
+  /// Returns what a part that is shown is of, among those of the dataset.
+  std::size_t GetPart(std::size_t shown) const { return this->ShowsBoxes() ? 0 : shown; }
+  /// Calls `visit(field, part)` for each part that is shown and has the array, in their order: those of the dataset, or
+  /// the levels' boxes.
   template <class Visit>
   void ForEachField(const Published& array, const glm::dmat4& dataToWorld, const Visit& visit) const
   {
@@ -190,6 +203,12 @@ private:
   std::unique_ptr<vtkDSMVolumeData> Data;
   /// Publications of the arrays of GetShown, in their order. Several may be the same one.
   std::vector<std::shared_ptr<Published>> Arrays;
+  ///@{
+  /// Of the levels of the dataset's file; empty: all of one level is shown.
+  vtkDSMNestedLevels::Boxes WantedBoxes;
+  vtkDSMNestedLevels::Boxes ShownBoxes;
+  ///@}
+  int ChosenLevel = 0; ///< the last one of FindLevel
   /// Publications of the previous values, during Update.
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested;                         ///< isovalue

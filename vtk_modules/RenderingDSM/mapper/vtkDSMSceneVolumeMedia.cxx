@@ -102,11 +102,10 @@ void vtkDSMSceneVolume::AddMedia(const vtkDSMVolumeLook& look, rt::Scene& scene)
       "IndependentComponentsOn() of the property.");
     return;
   }
-  this->Prop->ComputeMatrix();
-  const glm::dmat4 dataToWorld = vtkDSMTranslation::ToMatrix(this->Prop->GetMatrix());
+  const glm::dmat4 dataToWorld = this->FindDataToWorld();
   const std::size_t count = this->HasSeveralMedia() ? this->Arrays.size() : 1;
   const std::size_t before = scene.Media.size();
-  std::vector<int> groups(this->Data->GetParts().size());
+  std::vector<int> groups(this->GetParts(*this->GetIso()).size());
   for (std::size_t number = 0; number < count; ++number)
   {
     this->AddMedium(look, number, dataToWorld, groups, scene);

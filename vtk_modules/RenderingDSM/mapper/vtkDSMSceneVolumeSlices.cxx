@@ -68,7 +68,7 @@ void vtkDSMSceneVolume::AddSlices(
     {
       auto slice =
         this->CreateSlice(look, dataToWorld, field, part, this->Mapper->GetSliceLighting());
-      slice.Planes = look.GetSlices(dataToWorld, *finest[part]);
+      slice.Planes = look.GetSlices(dataToWorld, *finest[this->GetPart(part)]);
       scene.Objects.push_back(std::move(slice));
     });
 }

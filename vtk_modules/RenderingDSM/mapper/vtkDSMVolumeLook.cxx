@@ -66,7 +66,7 @@ std::vector<rt::SectionPlane> vtkDSMVolumeLook::GetSlices(
   const glm::dmat4& dataToWorld, const vtkDSMPartValues& values) const
 {
   std::vector<rt::SectionPlane> slices;
-  const glm::dmat4 toWorld = dataToWorld * values.GetIndexToData();
+  const glm::dmat4 toWorld = dataToWorld * values.GetSlicesToData();
   const bricks::Index3 count = values.CountSlices();
   const bricks::GridPlanes* const grid = values.GetPlanes();
   const glm::dmat3 toIndex = glm::inverse(glm::dmat3(toWorld));

@@ -108,10 +108,6 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMLatticePart::Publish(const Request& requ
       {
         sources = this->CreateSources(values->Field->Lattice, choice);
       }
-      if (values)
-      {
-        values->Digests = dsm::FragmentDigests(values->Field->Lattice.GetBrickCount());
-      }
     });
   if (!values)
   {
@@ -120,11 +116,10 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMLatticePart::Publish(const Request& requ
   bricks::VoxelField& field = *values->Field;
   if (std::shared_ptr<const vtkDSMFileVolume> file = this->FindFile(request, infos, field.Lattice))
   {
-    values->Digests = {};
-    this->PublishFile(*file, false, request, request.GetName(), *values, std::move(known));
-    values->File = std::move(file);
-    return values;
+    return this->PublishLevel(std::move(file), request, std::move(values), std::move(known));
   }
+  messenger.RunTogether("Preparing the " + request.Purpose,
+    [&] { values->Digests = dsm::FragmentDigests(field.Lattice.GetBrickCount()); });
   if (choice.IsAveraged)
   {
     sources = this->AverageCells(request, infos);

@@ -39,6 +39,8 @@ public:
   bool MayTakeOver(const vtkDSMPartValues& old) const override;
   std::shared_ptr<vtkDSMPartValues> PublishCoarser(
     const vtkDSMPartValues& finest, int level, const Request& request) const override;
+  Boxed PublishBoxes(const vtkDSMPartValues& finest, const vtkDSMNestedLevels::Boxes& boxes,
+    const Request& request, const Boxed& old) const override;
   OwnCells FindOwnCells(const vtkDSMPartValues& values, const Choice& choice) const override;
 
 private:
@@ -59,6 +61,17 @@ private:
   /// another step, or null; bricks that are equal stay in memory.
   void PublishFile(const vtkDSMFileVolume& file, bool isCoarser, const Request& request,
     const std::string& what, Values& values, std::shared_ptr<Values> old) const;
+  /// Collective: the values of a lattice in a file, or of the finest of its levels that is small enough. `values`:
+  /// without bricks.
+  std::shared_ptr<Values> PublishLevel(std::shared_ptr<const vtkDSMFileVolume> file,
+    const Request& request, std::shared_ptr<Values> values, std::shared_ptr<Values> old) const;
+  /// Collective: the bricks of a level's box.
+  std::shared_ptr<bricks::VoxelField> PublishBox(const Values& finest,
+    const vtkDSMNestedLevels::Boxes& boxes, int level, const Request& request) const;
+  /// Collective: what a coarser level tells of the values of a file without an index; the bricks of that level are not
+  /// published.
+  std::shared_ptr<const bricks::VoxelField> LookAtCoarser(const vtkDSMFileVolume& file,
+    const bricks::BrickLattice& lattice, const Request& request) const;
   /// Collective: the old bricks, with what the pieces hold now.
   void Renew(Values& values, Values& old, const Sources& pieces, const Request& request) const;
   /// Local. Values in a field of such bricks, which leaves the store with its last user.

@@ -8,6 +8,7 @@
 #include "vtkDSMGather.h"
 #include "vtkDSMImagePiece.h"
 #include "vtkDSMLatticeValues.h"
+#include "vtkDSMNestedLevels.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -21,6 +22,9 @@
 
 namespace
 {
+
+/// The most bricks of a level that is published as a whole; their tables take tens of MiB on each rank.
+constexpr std::size_t MostBricks = std::size_t(1) << 20;
 
 /// Once for each file.
 void TellOfLargeChunks(const std::string& name, std::uint64_t need, std::uint64_t room)
@@ -86,6 +90,156 @@ std::unique_ptr<vtkDSMFileVolume> vtkDSMLatticePart::FindFile(
     own && this->FindOwn(first), choice.Component, choice.OnCells, valid);
 }
 
+std::shared_ptr<const bricks::VoxelField> vtkDSMLatticePart::LookAtCoarser(
+  const vtkDSMFileVolume& file, const bricks::BrickLattice& lattice, const Request& request) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  for (int level = 1; level <= file.CountCoarser(); ++level)
+  {
+    const auto coarser = file.FindCoarser(messenger, level);
+    const auto field = std::make_shared<bricks::VoxelField>();
+    std::optional<bricks::VoxelIndex> index;
+    if (coarser)
+    {
+      messenger.RunTogether("Preparing the " + request.Purpose,
+        [&]
+        {
+          field->Lattice = bricks::BrickLattice(
+            coarser->GetPoints(), lattice.GetScalarType(), lattice.HasCellMask());
+        });
+      index = coarser->FindIndex(messenger, field->Lattice, nullptr,
+        this->Group->GetStore().GetSettings().Workers, request.Progress);
+    }
+    if (index)
+    {
+      messenger.RunTogether("Building the macrocells",
+        [&]
+        {
+          field->Survey = index->Survey;
+          field->Hierarchy = bricks::MacrocellHierarchy(field->Lattice, std::move(index->Bricks));
+        });
+      return field;
+    }
+  }
+  throw dsm::Error("The coarser levels of the file '" + file.GetPath() + "' do not have " +
+    request.GetName() +
+    ", or are too large themselves to find the range of its values. Write levels until one is "
+    "smaller.");
+}
+
+std::shared_ptr<vtkDSMLatticePart::Values> vtkDSMLatticePart::PublishLevel(
+  std::shared_ptr<const vtkDSMFileVolume> file, const Request& request,
+  std::shared_ptr<Values> values, std::shared_ptr<Values> old) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  vtkDSMNestedLevels::Volumes levels{ file };
+  for (int level = 1; level <= file->CountCoarser(); ++level)
+  {
+    if (auto coarser = file->FindCoarser(messenger, level))
+    {
+      levels.push_back(std::move(coarser));
+    }
+  }
+  std::size_t level = 0;
+  const bricks::BrickLattice lattice = values->Field->Lattice;
+  std::shared_ptr<vtkDSMNestedLevels> nested;
+  messenger.RunTogether("Preparing the " + request.Purpose,
+    [&]
+    {
+      const auto isTooLarge = [&]
+      {
+        const bricks::BrickLattice bricks(levels[level]->GetPoints(), lattice.GetScalarType(),
+          lattice.HasCellMask(), bricks::BrickLattice::GetDefaultEdge(lattice.GetScalarType()));
+        return bricks.GetBrickCount() > MostBricks;
+      };
+      while (level + 1 < levels.size() && isTooLarge())
+      {
+        ++level;
+      }
+      if (level > 0)
+      {
+        values = this->MakeValues(bricks::BrickLattice(levels[level]->GetPoints(),
+                                    lattice.GetScalarType(), lattice.HasCellMask()),
+          this->IndexToData * file->GetIndexOf(*levels[level]));
+        values->SlicesToData = this->IndexToData;
+        values->Level = static_cast<int>(level);
+      }
+      nested = vtkDSMNestedLevels::Create(levels, lattice);
+    });
+  this->PublishFile(*levels[level], level > 0, request, request.GetName(), *values, std::move(old));
+  values->File = std::move(file);
+  values->Nested = std::move(nested);
+  return values;
+}
+
+std::shared_ptr<bricks::VoxelField> vtkDSMLatticePart::PublishBox(const Values& finest,
+  const vtkDSMNestedLevels::Boxes& boxes, int level, const Request& request) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  dsm::BlockStore& store = this->Group->GetStore();
+  const vtkDSMNestedLevels& nested = *finest.Nested;
+  const vtkDSMFileVolume& volume = nested.GetVolume(level);
+  std::shared_ptr<bricks::VoxelField> field;
+  std::optional<dsm::BlockDirectory> directory;
+  std::shared_ptr<dsm::ReadingSource> source;
+  messenger.RunTogether("Preparing the " + request.Purpose,
+    [&]
+    {
+      const bricks::BrickLattice lattice = nested.GetLattice(boxes, level);
+      field = this->MakeValues(lattice, glm::dmat4(1.0))->Field;
+      directory = nested.CreateDirectory(boxes, level, lattice, messenger.GetSize());
+      directory->SetReadThroughCache();
+      directory->AddIndexBytes(
+        volume.GetTableBytes() + dsm::ReadingSource::MostReads * directory->GetLargest());
+      source = std::make_shared<dsm::ReadingSource>(messenger,
+        nested.CreateReader(boxes, level, lattice), "the file '" + volume.GetPath() + "'");
+    });
+  const std::string what = "a box of level " + std::to_string(level) + " of " + request.GetName();
+  field->Segment = this->Group->WithRoom([&] { return store.Publish(what, *directory, source); });
+  return field;
+}
+
+vtkDSMPart::Boxed vtkDSMLatticePart::PublishBoxes(const vtkDSMPartValues& finest,
+  const vtkDSMNestedLevels::Boxes& boxes, const Request& request, const Boxed& old) const
+{
+  dsm::Messenger& messenger = this->Group->GetMessenger();
+  const auto& all = dynamic_cast<const Values&>(finest);
+  all.Nested->ExchangeRanges(messenger);
+  Boxed boxed;
+  for (int level = 0; level < all.Nested->GetCount(); ++level)
+  {
+    if (boxes[static_cast<std::size_t>(level)].IsEmpty())
+    {
+      continue;
+    }
+    const vtkDSMNestedLevels::Boxes own(boxes.begin() + level, boxes.end());
+    const auto known = std::find_if(old.begin(), old.end(),
+      [&](const auto& one)
+      {
+        const auto& values = dynamic_cast<const Values&>(*one);
+        return values.BoxLevel == level && values.Boxes == own;
+      });
+    const auto bricked = known != old.end() ? dynamic_cast<const Values&>(**known).Bricked
+                                            : this->PublishBox(all, boxes, level, request);
+    messenger.RunTogether("Building the macrocells",
+      [&]
+      {
+        const std::shared_ptr<bricks::VoxelField> field(new bricks::VoxelField(*bricked),
+          [bricked](const bricks::VoxelField* one) { delete one; });
+        field->Hole = all.Nested->FindHole(boxes, level);
+        field->Hierarchy = bricks::MacrocellHierarchy(
+          field->Lattice, all.Nested->FindRanges(boxes, level, field->Lattice));
+        const auto values = std::make_shared<Values>(
+          field, this->IndexToData * all.Nested->GetToFinest(boxes, level));
+        values->BoxLevel = level;
+        values->Boxes = own;
+        values->Bricked = bricked;
+        boxed.push_back(values);
+      });
+  }
+  return boxed;
+}
+
 std::shared_ptr<vtkDSMPartValues> vtkDSMLatticePart::PublishCoarser(
   const vtkDSMPartValues& finest, int level, const Request& request) const
 {
@@ -103,7 +257,8 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMLatticePart::PublishCoarser(
       const bricks::BrickLattice& lattice = fine.Field->Lattice;
       values = this->MakeValues(
         bricks::BrickLattice(file->GetPoints(), lattice.GetScalarType(), lattice.HasCellMask()),
-        this->IndexToData * fine.File->GetIndexOf(*file));
+        fine.SlicesToData * fine.File->GetIndexOf(*file));
+      values->Looked = fine.Looked;
     });
   this->PublishFile(*file, true, request,
     "level " + std::to_string(level) + " of " + request.GetName(), *values, nullptr);
@@ -155,12 +310,26 @@ void vtkDSMLatticePart::PublishFile(const vtkDSMFileVolume& file, bool isCoarser
     const auto publish = [&] { return store.Publish(what, *directory, values.Source); };
     field.Segment = isCoarser ? publish() : this->Group->WithRoom(publish);
   }
-  bricks::VoxelIndex index = file.FindIndex(messenger, field.Lattice,
-    this->FindFileValues(request.Array), store.GetSettings().Workers, request.Progress);
+  std::optional<bricks::VoxelIndex> found = file.FindIndex(messenger, field.Lattice,
+    isCoarser ? nullptr : this->FindFileValues(request.Array), store.GetSettings().Workers,
+    request.Progress);
+  if (!found && !values.Looked)
+  {
+    values.Looked = this->LookAtCoarser(file, field.Lattice, request);
+  }
+  bricks::VoxelIndex index;
   std::vector<bool> differ;
   messenger.RunTogether("Building the macrocells",
     [&]
     {
+      if (found)
+      {
+        index = std::move(*found);
+      }
+      else
+      {
+        index = bricks::VoxelIndex::CreateUnknown(field.Lattice, *values.Looked->Survey);
+      }
       values.Bricks = std::make_shared<const vtkDSMFileVolume::Digests>(
         hasSteps ? std::move(index.Digests) : vtkDSMFileVolume::Digests());
       if (staysInMemory)

@@ -57,3 +57,9 @@ std::shared_ptr<vtkDSMPartValues> vtkDSMPart::PublishCoarser(
 {
   return nullptr;
 }
+
+vtkDSMPart::Boxed vtkDSMPart::PublishBoxes(
+  const vtkDSMPartValues&, const vtkDSMNestedLevels::Boxes&, const Request&, const Boxed&) const
+{
+  return {};
+}

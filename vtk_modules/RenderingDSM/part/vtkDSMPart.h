@@ -76,6 +76,13 @@ public:
   virtual std::shared_ptr<vtkDSMPartValues> PublishCoarser(
     const vtkDSMPartValues& finest, int level, const Request& request) const;
 
+  /// Collective. Values of each level's box, the finest first, of levels that have one. `finest`: the result of
+  /// Publish for the same array. `old`: the result of an earlier call, whose bricks are taken over where they are the
+  /// same.
+  using Boxed = std::vector<std::shared_ptr<vtkDSMPartValues>>;
+  virtual Boxed PublishBoxes(const vtkDSMPartValues& finest, const vtkDSMNestedLevels::Boxes& boxes,
+    const Request& request, const Boxed& old) const;
+
   /// Local. This rank's cells, with their datasets: for isosurfaces as triangles. `values`: of the array.
   virtual OwnCells FindOwnCells(const vtkDSMPartValues& values, const Choice& choice) const;
   /// Local. The same of cells of other shapes, in grids.

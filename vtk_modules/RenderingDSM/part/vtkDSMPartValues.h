@@ -7,6 +7,7 @@
 #include "DSMBricks/layout/GridPlanes.h"
 #include "DSMBricks/layout/MacrocellHierarchy.h"
 #include "DSMRayTracing/field/Fields.h"
+#include "vtkDSMNestedLevels.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -36,7 +37,7 @@ public:
     return std::visit(
       [](const auto& field) -> const glm::dmat4& { return field.IndexToWorld; }, this->Field);
   }
-  bricks::ValueRange GetRange() const
+  virtual bricks::ValueRange GetRange() const
   {
     return std::visit(
       [](const auto& field) { return field.GetValues().Hierarchy.GetRange(); }, this->Field);
@@ -51,8 +52,15 @@ public:
   virtual const bricks::GridPlanes* GetPlanes() const { return nullptr; }
   ///@}
 
+  /// From indices of slices to the data.
+  virtual const glm::dmat4& GetSlicesToData() const { return this->GetIndexToData(); }
+
   /// Returns the number of coarser levels of detail that vtkDSMPart::PublishCoarser may find.
   virtual int CountCoarser() const { return 0; }
+  /// Returns the level that the result of vtkDSMPart::Publish is of: finer ones are too large to be published as a whole.
+  virtual int GetLevel() const { return 0; }
+  /// Levels of which a picture may show a box each (vtkDSMPart::PublishBoxes); null: none.
+  virtual const vtkDSMNestedLevels* GetNested() const { return nullptr; }
 
 protected:
   /// `field`: in the space of the data.

@@ -406,7 +406,9 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
     {
       if (finest.Parts[part])
       {
-        values[part] = this->Parts[part]->PublishCoarser(*finest.Parts[part], level, request);
+        values[part] = level <= finest.Parts[part]->GetLevel()
+          ? finest.Parts[part]
+          : this->Parts[part]->PublishCoarser(*finest.Parts[part], level, request);
         isAny = values[part] != nullptr;
       }
     }
@@ -417,4 +419,10 @@ std::shared_ptr<const vtkDSMVolumeData::Coarser> vtkDSMVolumeData::PublishCoarse
   }
   publications.Add<Coarser>(finest.Content, coarser);
   return coarser;
+}
+
+const vtkDSMNestedLevels* vtkDSMVolumeData::FindNested(const Publication& publication)
+{
+  const bool isOne = publication.Parts.size() == 1 && publication.Parts.front();
+  return isOne ? publication.Parts.front()->GetNested() : nullptr;
 }

@@ -74,6 +74,15 @@ public:
   std::shared_ptr<const Coarser> PublishCoarser(
     const Publication& finest, const vtkDSMPart::Request& request) const;
 
+  /// Local: the levels of which a picture may show a box each, of a publication of one part; null: none.
+  static const vtkDSMNestedLevels* FindNested(const Publication& publication);
+  /// Collective, of a publication with such levels: vtkDSMPart::PublishBoxes.
+  Values PublishBoxes(const Publication& finest, const vtkDSMNestedLevels::Boxes& boxes,
+    const vtkDSMPart::Request& request, const Values& old) const
+  {
+    return this->Parts.front()->PublishBoxes(*finest.Parts.front(), boxes, request, old);
+  }
+
 private:
   /// Collective. Throws where the choice has a mask, but no piece has its array.
   void FindMask(const Choice& choice) const;

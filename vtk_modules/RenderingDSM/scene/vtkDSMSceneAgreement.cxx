@@ -128,7 +128,8 @@ struct vtkDSMScene::Internals::View
   rt::Environment Background;
   std::int32_t IsApart; ///< something of its own may be between surfaces
   std::uint64_t Levels; ///< of detail, of all that is shown: see vtkDSMSceneMembers::ChooseLevels
-  std::int32_t Coarser; ///< levels that may stand in
+  std::int32_t NeedsBoxes; ///< of levels, others than are shown
+  std::int32_t Coarser;    ///< levels that may stand in
   std::int32_t HasObjects;
   std::int32_t LimitsRays; ///< draws something itself that ends rays through media
   std::int32_t NeedsRanks; ///< to deliver a picture, also without edges
@@ -247,6 +248,7 @@ std::vector<std::byte> vtkDSMScene::Internals::EncodeView(
                         : vtkDSMTranslation::ToRequest(this->Renderer, this->Display, projection);
   View view{};
   view.Levels = this->ChooseLevels(request);
+  view.NeedsBoxes = this->Members.NeedBoxes();
   this->Members.AddTo(scene, 0);
   this->KeepProp(scene);
   double bounds[6];
@@ -492,15 +494,17 @@ void vtkDSMScene::Internals::Draw(bool& isOver)
       this->TakeLights(records.front(), place + sizeof(View), scene);
       coarser = this->AgreeOnView(views, scene, request);
     });
+  const bool needsBoxes = isAny(&View::NeedsBoxes);
   const bool isLike = std::all_of(views.begin(), views.end(),
     [&](const View& view) { return view.Levels == views.front().Levels; });
-  if (!isLike)
+  if (!isLike || needsBoxes)
   {
-    // The cameras differ in their last bits.
+    // The cameras may differ in their last bits.
+    messenger.RunTogether(what, [&] { this->ChooseLevels(request); });
+    this->Members.TakeBoxes(this->Group);
     offers = messenger.GatherValueTogether(what,
       [&]
       {
-        this->ChooseLevels(request);
         this->Members.AddTo(scene, 0);
         return this->Eye->Accumulation.CreateOffer(this->Group->GetStore(), scene,
           rt::Resolution::Reduce(request, this->GetMovingEdge(request)),

@@ -192,7 +192,8 @@ std::uint64_t vtkDSMScene::Internals::ChooseLevels(const rt::FrameRequest& reque
 {
   vtkDSMMemoryOptions* const options = this->Group->GetOptions();
   const bool isAutomatic = options->GetLevelOfDetail() == vtkDSMMemoryOptions::AutomaticLevel;
-  return this->Members.ChooseLevels(request, isAutomatic ? options->GetPixelsPerSample() : 0.0);
+  return this->Members.ChooseLevels(
+    request, isAutomatic ? options->GetPixelsPerSample() : 0.0, this->IsInteractive());
 }
 
 /// Levels below the finest that may stand in, as far as this rank knows.

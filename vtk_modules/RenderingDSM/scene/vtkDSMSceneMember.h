@@ -9,6 +9,7 @@
 #include "vtkTimeStamp.h"
 #include "vtkType.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -80,8 +81,25 @@ public:
   /// Local, the same on every rank: how many of them there are.
   virtual int CountCoarser() const { return 0; }
   /// Local, the same on every rank: the coarsest level of detail whose samples a picture shows so many pixels apart, or
-  /// less, where they are nearest to the camera; else the finest (0). `request`: of edge 1.
-  virtual int FindLevel(const rt::FrameRequest& /*request*/, double /*pixels*/) { return 0; }
+  /// less, where they are nearest to the camera; else the finest (0). `request`: of edge 1. `moving`: the one before,
+  /// rather than a finer one.
+  virtual int FindLevel(const rt::FrameRequest& /*request*/, double /*pixels*/, bool /*moving*/)
+  {
+    return 0;
+  }
+  ///@{
+  /// Of levels of which a picture shows a box each (vtkDSMNestedLevels): ChooseBoxes finds the boxes for a picture,
+  /// local, and returns a number that ranks share that find the same; 0: there are none. NeedsBoxes says whether
+  /// others are shown; TakeBoxes is collective, and shows those that were chosen. 0 pixels: the finest everywhere.
+  /// While a view is `moving`, the boxes stay that are shown.
+  virtual std::uint64_t ChooseBoxes(
+    const rt::FrameRequest& /*request*/, double /*pixels*/, bool /*moving*/)
+  {
+    return 0;
+  }
+  virtual bool NeedsBoxes() const { return false; }
+  virtual void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>&) {}
+  ///@}
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.
   void SetCoarser(int level) { this->Coarser = level; }
 

@@ -153,16 +153,34 @@ int vtkDSMSceneMembers::CountCoarser() const
   return levels;
 }
 
-std::uint64_t vtkDSMSceneMembers::ChooseLevels(const rt::FrameRequest& request, double pixels)
+std::uint64_t vtkDSMSceneMembers::ChooseLevels(
+  const rt::FrameRequest& request, double pixels, bool moving)
 {
   bricks::ByteHash hash;
   for (Member& member : this->Shown)
   {
     const Placing placing(member);
-    member.Level = pixels > 0.0 ? member.State->FindLevel(request, pixels) : 0;
+    const std::uint64_t boxes = member.State->ChooseBoxes(request, pixels, moving);
+    member.Level =
+      pixels > 0.0 && boxes == 0 ? member.State->FindLevel(request, pixels, moving) : 0;
+    hash.Add(&boxes, sizeof(boxes));
     hash.Add(&member.Level, sizeof(member.Level));
   }
   return hash.Get();
+}
+
+bool vtkDSMSceneMembers::NeedBoxes() const
+{
+  return std::any_of(this->Shown.begin(), this->Shown.end(),
+    [](const Member& member) { return member.State->NeedsBoxes(); });
+}
+
+void vtkDSMSceneMembers::TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group)
+{
+  for (const Member& member : this->Shown)
+  {
+    member.State->TakeBoxes(group);
+  }
 }
 
 int vtkDSMSceneMembers::GetCoarsestChosen() const

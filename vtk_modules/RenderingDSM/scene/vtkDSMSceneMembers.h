@@ -44,9 +44,13 @@ public:
   /// Returns the hidden member with bricks that was shown the longest ago; null if there is none.
   vtkDSMSceneMember* FindOldestHidden() const;
 
-  /// Local: chooses the level of detail of each shown member for a picture (vtkDSMSceneMember::FindLevel); 0 pixels:
-  /// the finest. Returns a number that ranks share that choose the same.
-  std::uint64_t ChooseLevels(const rt::FrameRequest& request, double pixels);
+  /// Local: chooses the level of detail of each shown member for a picture (vtkDSMSceneMember::FindLevel), or the boxes
+  /// of its levels; 0 pixels: the finest. While a view is `moving`, none becomes finer, and boxes stay. Returns a
+  /// number that ranks share that choose the same.
+  std::uint64_t ChooseLevels(const rt::FrameRequest& request, double pixels, bool moving);
+  /// Local: whether any boxes are to be shown that are not; TakeBoxes, collective, shows them.
+  bool NeedBoxes() const;
+  void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group);
   /// The coarsest level of detail that was chosen for anything, below the finest; and the finest one of what has
   /// several.
   int GetCoarsestChosen() const;

@@ -94,7 +94,7 @@ bool LatticeSections::FindPlace(
       static_cast<int>(std::min(static_cast<std::int64_t>(index), cells[axis] - 1));
   }
   place.Brick = lattice.GetId(place.GetCell() / bricks::Index3(lattice.GetEdge()));
-  return true;
+  return !this->Voxels.Hole.Has(place.GetCell());
 }
 
 bool LatticeSections::FindNext(const Ray& ray, const Line& line, Hit& hit) const
