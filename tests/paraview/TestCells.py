@@ -48,7 +48,8 @@ def show_contour(source, name):
     points = source
     if name == "OfCells":
         # ParaView's means at points know no cells of other ranks, unless there are ghost cells.
-        points = simple.GhostCellsGenerator(Input=source) if get_ranks() > 1 else source
+        add_ghosts = getattr(simple, "GhostCellsGenerator", None) or simple.GhostCells  # since ParaView 6.1
+        points = add_ghosts(Input=source) if get_ranks() > 1 else source
         points = simple.CellDatatoPointData(Input=points)
     contour = simple.Contour(Input=points, ContourBy=["POINTS", "RTData"], Isosurfaces=[150.0], ComputeScalars=0)
     show_surface(contour, view)

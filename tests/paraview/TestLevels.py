@@ -144,7 +144,9 @@ def show_blocks(name, sources, default):
         display.DSMShow, display.DSMIsoArray, display.DSMIsoValues = "Isosurfaces", ["POINTS", "RTData"], [150.0]
         render(view)  # the bounds of trees are known then
         place_camera(view)
-        together = render(view, name)
+        # Several ranks have other random trees since ParaView 6.
+        is_alike = named not in sources or simple.GetParaViewVersion().major < 6
+        together = render(view, name if is_alike else None)
         hierarchy = group.GetDataInformation().DataInformation.GetHierarchy()
         paths = [f"/Root/{hierarchy.GetNodeName(node)}" for node in hierarchy.GetChildNodes(0)]
         for hidden in range(len(sources)):
@@ -156,7 +158,7 @@ def show_blocks(name, sources, default):
         colors = (["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"], ["1", "1", "0"])
         display.BlockColors = [word for path, color in zip(paths, colors) for word in [path] + color]
         display.BlockOpacities = [paths[0], "0.4", paths[-1], "0.3"]
-        render(view, name + "Colors")
+        render(view, name + "Colors" if is_alike else None)
         display.BlockColors, display.BlockOpacities = [], []
         simple.ColorBy(display, ("POINTS", "Normals"))  # of the sphere only
         render(view)

@@ -25,7 +25,7 @@ public:
   /// Pictures whose hits are kept: those of a view's two eyes, and of another view.
   static constexpr std::size_t MostPictures = 4;
 
-  /// Tells frames apart whose hits differ.
+  /// Differs between frames whose hits differ.
   struct Key
   {
     std::uint64_t Picture; ///< digest of surfaces and camera

@@ -3,9 +3,11 @@
 
 #include "DSMBricks/base/ParallelFor.h"
 #include "DSMCore/base/ByteDigest.h"
+#include "DSMCore/base/ReaderThreads.h"
 #include "DSMVolumeFiles/base/CopyBox.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/ReadingManner.h"
+#include "DSMVolumeFiles/base/Url.h"
 #include "DSMVolumeFiles/open/SeriesFile.h"
 
 #include <atomic>
@@ -27,6 +29,10 @@ constexpr std::size_t InHandOfEach = 2;
 
 /// About what a chunk takes beside its samples: a chunk may have a single one.
 constexpr std::size_t EntryBytes = 400;
+
+/// Requests to servers at the same time, and the part of the room that they may fill.
+constexpr int RequestsAhead = 16;
+constexpr std::uint64_t PartAhead = 4;
 
 /// Samples along an axis that a brick has in common with the next.
 constexpr int Overlap = 2;
@@ -338,9 +344,35 @@ bool ChunkCache::ReadFill(const ArrayStep& of, const bricks::Box& box, std::byte
   return true;
 }
 
-void ChunkCache::Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes) const
+void ChunkCache::FetchAhead(const ArrayStep& of, const bricks::Index3& chunk)
+{
+  static dsm::ReaderThreads threads(RequestsAhead);
+  static std::atomic<std::uint64_t> waiting{ 0 };
+  const std::uint64_t bytes =
+    static_cast<std::uint64_t>(of.Get().Grid.GetBox(chunk).GetCount()) * of.Get().GetSampleBytes();
+  if (waiting.fetch_add(bytes) + bytes > this->GetRoom() / PartAhead)
+  {
+    waiting -= bytes;
+    return;
+  }
+  threads.Add(
+    [this, of, chunk, bytes]
+    {
+      try
+      {
+        this->Get(of, chunk);
+      }
+      catch (const std::exception&) // who needs the chunk asks again
+      {
+      }
+      waiting -= bytes;
+    });
+}
+
+void ChunkCache::Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes)
 {
   const FileArray& what = of.Get();
+  const bool isRemote = IsUrl(of.File->GetPath());
   try
   {
     std::vector<VolumeFile::ChunkPart> parts;
@@ -352,7 +384,15 @@ void ChunkCache::Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& b
       bricks::ForEachIndex(what.Grid.GetChunks(own),
         [&](const bricks::Index3& chunk)
         {
-          if (!this->HasChunk(of, chunk))
+          if (this->HasChunk(of, chunk))
+          {
+            return;
+          }
+          if (isRemote)
+          {
+            this->FetchAhead(of, chunk);
+          }
+          else
           {
             parts.push_back({ chunk, bricks::Intersect(what.Grid.GetBox(chunk), box) });
           }

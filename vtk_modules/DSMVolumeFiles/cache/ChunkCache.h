@@ -75,9 +75,9 @@ public:
   void ReadBoxes(const ArrayStep& of, const std::vector<bricks::Box>& boxes,
     const std::vector<std::byte*>& outs, int threads);
 
-  /// Boxes will probably be read soon: advises the system of their chunks that are not cached, each one once.
-  /// Errors are reported when the boxes are read.
-  void Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes) const;
+  /// Boxes will probably be read soon: advises the system of their chunks that are not cached, each one once; fetches
+  /// those of a server on other threads. Errors are reported when the boxes are read.
+  void Prefetch(const ArrayStep& of, const std::vector<bricks::Box>& boxes);
 
 private:
   /// The cache does not keep a file open.
@@ -106,6 +106,7 @@ private:
   };
 
   void Read(const ArrayStep& of, const bricks::Box& box, bool scattered, std::byte* out);
+  void FetchAhead(const ArrayStep& of, const bricks::Index3& chunk);
   bool HasChunk(const ArrayStep& of, const bricks::Index3& chunk) const;
   /// A box that a chunk and its halo fill, where the file has these together and the chunk is not here.
   bool ReadWithHalo(const ArrayStep& of, const bricks::Box& box, std::byte* out);

@@ -21,6 +21,10 @@ namespace
 constexpr std::size_t MostKnownKeys = 1 << 16;
 constexpr std::chrono::seconds LeastBetweenChecks(1);
 
+/// A server that was asked so short a time before is not asked again: the levels of a volume are opened one after the
+/// other.
+constexpr std::chrono::seconds Recently(1);
+
 /// A request takes as long as some bytes.
 constexpr std::uint64_t LargestRemoteGap = std::uint64_t(64) << 10;
 constexpr std::uint64_t MostTogetherRemote = std::uint64_t(8) << 20;
@@ -29,7 +33,7 @@ void RefuseToWait()
 {
   if (WithoutWaiting::IsInForce())
   {
-    throw WouldWait{ true };
+    throw WouldWait{};
   }
 }
 
@@ -162,7 +166,7 @@ RemoteKeys::RemoteKeys(const std::string& url, std::function<bool()> goesOn)
   : Place(url)
   , GoesOn(std::move(goesOn))
   , Kept(KeptAnswers::GetShared())
-  , OpenedAt(KeptAnswers::Time::clock::now())
+  , OpenedAt(KeptAnswers::Time::clock::now() - Recently)
 {
 }
 

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace vol
 {
@@ -163,8 +164,20 @@ private:
 
   void FindRoot()
   {
+    static std::mutex guard;
+    static std::map<std::string, std::string> found; // what stores had, which are opened again
+    std::vector<std::string> names{ "zarr.json", ".zmetadata", ".zgroup", ".zarray" };
+    {
+      const std::lock_guard<std::mutex> lock(guard);
+      const auto known = found.find(this->Root);
+      if (known != found.end())
+      {
+        std::stable_partition(names.begin(), names.end(),
+          [&](const std::string& name) { return name == known->second; });
+      }
+    }
     std::string refusal;
-    for (const char* name : { "zarr.json", ".zmetadata", ".zgroup", ".zarray" })
+    for (const std::string& name : names)
     {
       const std::string path = this->Root + "/" + name;
       std::optional<std::string> text;
@@ -178,6 +191,10 @@ private:
       }
       if (text)
       {
+        {
+          const std::lock_guard<std::mutex> lock(guard);
+          found[this->Root] = name;
+        }
         this->RootKey = path;
         this->IsThird = path.back() == 'n';
         this->TakeConsolidated(name, *text);

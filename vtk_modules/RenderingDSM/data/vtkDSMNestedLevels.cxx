@@ -145,8 +145,9 @@ std::shared_ptr<vtkDSMNestedLevels> vtkDSMNestedLevels::Create(
     ? bricks::ScalarType::Float32
     : bricks::ScalarType::Float64;
   const std::shared_ptr<const vtkDSMFileVolume> finest = volumes.front();
-  for (std::shared_ptr<const vtkDSMFileVolume>& volume : volumes)
+  for (std::size_t level = 0; level < volumes.size(); ++level)
   {
+    std::shared_ptr<const vtkDSMFileVolume>& volume = volumes[level];
     const std::optional<Index3> scale = FindScale(finest->GetIndexOf(*volume));
     const bool isNext = scale &&
       (levels->Scales.empty() ||
@@ -156,6 +157,7 @@ std::shared_ptr<vtkDSMNestedLevels> vtkDSMNestedLevels::Create(
     {
       levels->Scales.push_back(*scale);
       levels->Volume.push_back(std::move(volume));
+      levels->FileLevels.push_back(static_cast<int>(level));
     }
   }
   levels->Ranges.resize(levels->Volume.size());
@@ -167,35 +169,46 @@ Index3 vtkDSMNestedLevels::GetCells(int level) const
   return DivideUp(this->GetVolume(0).GetPoints() - Index3(1), this->GetScale(level));
 }
 
+double vtkDSMNestedLevels::GetDepth(const rt::SeenPart& seen, int level, double pixels) const
+{
+  return pixels > 0.0 ? seen.GetWidth(glm::dvec3(this->GetScale(level))) / pixels
+                      : std::numeric_limits<double>::infinity();
+}
+
+int vtkDSMNestedLevels::FindLevel(const rt::SeenPart& seen, double depth, double pixels) const
+{
+  int level = this->GetCount() - 1;
+  while (level > 0 && this->GetDepth(seen, level, pixels) > depth)
+  {
+    --level;
+  }
+  return level;
+}
+
+int vtkDSMNestedLevels::FindFarLevel(
+  const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const
+{
+  const rt::SeenPart seen = this->FindSeen(request, indexToWorld);
+  const auto all = seen.Find(std::numeric_limits<double>::infinity());
+  return all
+    ? this->FileLevels[static_cast<std::size_t>(this->FindLevel(seen, all->Farthest, pixels))]
+    : 0;
+}
+
 vtkDSMNestedLevels::Boxes vtkDSMNestedLevels::FindBoxes(
   const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const
 {
   const int coarsest = this->GetCount() - 1;
-  const rt::SeenPart seen(
-    request, indexToWorld, glm::dvec3(this->GetVolume(0).GetPoints() - Index3(1)));
+  const rt::SeenPart seen = this->FindSeen(request, indexToWorld);
   const auto all = seen.Find(std::numeric_limits<double>::infinity());
   if (!all)
   {
     return {};
   }
-  // From this depth on, samples of a level are narrow enough.
-  const auto getDepth = [&](int level)
-  {
-    return pixels > 0.0 ? seen.GetWidth(glm::dvec3(this->GetScale(level))) / pixels
-                        : std::numeric_limits<double>::infinity();
-  };
-  const auto findLevel = [&](double depth)
-  {
-    int level = coarsest;
-    while (level > 0 && getDepth(level) > depth)
-    {
-      --level;
-    }
-    return level;
-  };
-  const int near = findLevel(all->Nearest);
+  const int near = this->FindLevel(seen, all->Nearest, pixels);
   const std::int64_t bricks = CountBricks({ Index3(0), this->GetCells(near) });
-  if (bricks <= FewBricks || (bricks <= SomeBricks && findLevel(all->Farthest) <= near + 1))
+  if (bricks <= FewBricks ||
+    (bricks <= SomeBricks && this->FindLevel(seen, all->Farthest, pixels) <= near + 1))
   {
     return {};
   }
@@ -203,7 +216,7 @@ vtkDSMNestedLevels::Boxes vtkDSMNestedLevels::FindBoxes(
   boxes.back() = { Index3(0), this->GetCells(coarsest) };
   for (int level = coarsest - 1; level >= 0; --level)
   {
-    const auto part = seen.Find(getDepth(level + 1));
+    const auto part = seen.Find(this->GetDepth(seen, level + 1, pixels));
     if (!part)
     {
       break;

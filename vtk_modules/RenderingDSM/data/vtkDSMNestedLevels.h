@@ -7,6 +7,7 @@
 #include "DSMCore/fetch/BlockReader.h"
 #include "DSMCore/transport/Messenger.h"
 #include "DSMRayTracing/frame/FrameRequest.h"
+#include "DSMRayTracing/frame/SampleWidth.h"
 #include "vtkDSMFileVolume.h"
 #include "vtkDSMNestedSource.h"
 
@@ -41,6 +42,11 @@ public:
   /// Local. The boxes of a picture. `indexToWorld`: of the finest level's samples. `pixels`: 0: the finest level
   /// everywhere. Empty: one level does as well, of which all is published.
   Boxes FindBoxes(
+    const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const;
+
+  /// Local. The coarsest level, of the file's, whose samples are so many pixels wide, or less, where they are farthest
+  /// away.
+  int FindFarLevel(
     const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const;
 
   /// The bricks of a level's box, and where they are: from their points to the finest level's samples.
@@ -88,7 +94,17 @@ private:
   /// A number of a brick, of all bricks of the level.
   std::uint64_t GetNumber(const bricks::Box& box, int level, const bricks::Index3& brick) const;
 
+  rt::SeenPart FindSeen(const rt::FrameRequest& request, const glm::dmat4& indexToWorld) const
+  {
+    return { request, indexToWorld,
+      glm::dvec3(this->GetVolume(0).GetPoints() - bricks::Index3(1)) };
+  }
+  /// From this depth on, samples of a level are narrow enough.
+  double GetDepth(const rt::SeenPart& seen, int level, double pixels) const;
+  int FindLevel(const rt::SeenPart& seen, double depth, double pixels) const;
+
   Volumes Volume;
+  std::vector<int> FileLevels;        ///< their numbers in the file, from the finest one on
   std::vector<bricks::Index3> Scales; ///< finest cells in one of a level
   bricks::ScalarType Type;            ///< of the bricks' samples
   bricks::ScalarType FileType;

@@ -21,8 +21,8 @@ namespace
 /// Samples that are all read to find what values there are: of a file on a disk, and on a server. Then those of a
 /// coarser level.
 constexpr std::int64_t MostOnDisk = std::int64_t(1) << 28;
-constexpr std::int64_t MostOnServer = std::int64_t(1) << 24;
-constexpr std::int64_t MostOfCoarser = std::int64_t(1) << 24;
+constexpr std::int64_t MostOnServer = std::int64_t(1) << 22;
+constexpr std::int64_t MostOfCoarser = std::int64_t(1) << 22;
 
 std::int64_t CountSamples(const vol::FileArray& array)
 {

@@ -72,10 +72,9 @@ public:
     return { number % size.x, number / size.x % size.y, number / (size.x * size.y) };
   }
 
-  /// Returns the ranges of all values; computed on the first call, unless they were kept. Those of an array that
-  /// IsTooLargeToRead are of a coarser level. Returns
-  /// null when `goesOn` returns false. `withBricks`: the values are also examined as bricks in the
-  /// same pass, if possible (vol::LookThrough). Throws dsm::Error.
+  /// Returns the ranges of all values; computed on the first call, unless they were kept. An array that
+  /// IsTooLargeToRead has the ranges of a coarser level. Returns null when `goesOn` returns false. `withBricks`: the
+  /// values are also examined as bricks in the same pass, if possible (vol::LookThrough). Throws dsm::Error.
   const vol::ValueRanges* FindRanges(
     const std::function<bool(double)>& goesOn, bool withBricks = false) const;
   /// Returns the bricks examined in that pass, once; this object does not keep them any longer.

@@ -430,6 +430,15 @@ int vtkDSMSceneVolume::FindLevel(const rt::FrameRequest& request, double pixels,
   return this->ChosenLevel = level;
 }
 
+int vtkDSMSceneVolume::FindDraftLevel(const rt::FrameRequest& request, double pixels)
+{
+  const vtkDSMNestedLevels* const nested = this->FindNested();
+  return nested
+    ? nested->FindFarLevel(request,
+        this->FindDataToWorld() * this->GetIso()->GetParts().front()->GetSlicesToData(), pixels)
+    : 0;
+}
+
 glm::dmat4 vtkDSMSceneVolume::FindDataToWorld() const
 {
   this->Prop->ComputeMatrix();

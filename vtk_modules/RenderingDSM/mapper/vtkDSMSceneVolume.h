@@ -39,6 +39,8 @@ public:
   int FindLevel(const rt::FrameRequest& request, double pixels, bool moving) override;
   std::uint64_t ChooseBoxes(const rt::FrameRequest& request, double pixels, bool moving) override;
   bool NeedsBoxes() const override { return !(this->WantedBoxes == this->ShownBoxes); }
+  bool HasBoxes() const override { return !this->ShownBoxes.empty(); }
+  int FindDraftLevel(const rt::FrameRequest& request, double pixels) override;
   void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group) override;
   /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
   void AddTo(rt::Scene& scene) override;

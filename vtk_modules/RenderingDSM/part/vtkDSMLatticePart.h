@@ -68,8 +68,8 @@ private:
   /// Collective: the bricks of a level's box.
   std::shared_ptr<bricks::VoxelField> PublishBox(const Values& finest,
     const vtkDSMNestedLevels::Boxes& boxes, int level, const Request& request) const;
-  /// Collective: what a coarser level tells of the values of a file without an index; the bricks of that level are not
-  /// published.
+  /// Collective: what a coarser level says about the values of a file without an index. The bricks of that level are
+  /// not published.
   std::shared_ptr<const bricks::VoxelField> LookAtCoarser(const vtkDSMFileVolume& file,
     const bricks::BrickLattice& lattice, const Request& request) const;
   /// Collective: the old bricks, with what the pieces hold now.

@@ -135,10 +135,12 @@ std::shared_ptr<vtkDSMLatticePart::Values> vtkDSMLatticePart::PublishLevel(
   vtkDSMNestedLevels::Volumes levels{ file };
   for (int level = 1; level <= file->CountCoarser(); ++level)
   {
-    if (auto coarser = file->FindCoarser(messenger, level))
+    auto coarser = file->FindCoarser(messenger, level);
+    if (!coarser)
     {
-      levels.push_back(std::move(coarser));
+      break;
     }
+    levels.push_back(std::move(coarser));
   }
   std::size_t level = 0;
   const bricks::BrickLattice lattice = values->Field->Lattice;

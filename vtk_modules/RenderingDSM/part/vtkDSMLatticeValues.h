@@ -46,7 +46,7 @@ public:
   std::shared_ptr<const vtkDSMFileVolume> File;
   std::shared_ptr<dsm::ReadingSource> Source;
   std::shared_ptr<const vtkDSMFileVolume::Digests> Bricks;
-  /// What is known of the values where the bricks have no index (else null): hierarchy and survey of a coarser level.
+  /// Hierarchy and survey of a coarser level, where the bricks have no index; else null.
   std::shared_ptr<const bricks::VoxelField> Looked;
   glm::dmat4 SlicesToData;
   int Level = 0;

@@ -57,7 +57,7 @@ public:
 
   /// Returns the number of coarser levels of detail that vtkDSMPart::PublishCoarser may find.
   virtual int CountCoarser() const { return 0; }
-  /// Returns the level that the result of vtkDSMPart::Publish is of: finer ones are too large to be published as a whole.
+  /// Returns the level that the result of vtkDSMPart::Publish is of: finer ones are too large.
   virtual int GetLevel() const { return 0; }
   /// Levels of which a picture may show a box each (vtkDSMPart::PublishBoxes); null: none.
   virtual const vtkDSMNestedLevels* GetNested() const { return nullptr; }

@@ -199,7 +199,8 @@ std::uint64_t vtkDSMScene::Internals::ChooseLevels(const rt::FrameRequest& reque
 /// Levels below the finest that may stand in, as far as this rank knows.
 int vtkDSMScene::Internals::CountCoarser() const
 {
-  const bool mayBeCoarser = this->Group->GetOptions()->GetCoarserDataWhileMoving() &&
+  const bool mayBeCoarser =
+    (this->Group->GetOptions()->GetCoarserDataWhileMoving() || this->Members.HaveBoxes()) &&
     this->IsInteractive() && !this->AlwaysFinest;
   return mayBeCoarser ? this->Members.CountCoarser() : 0;
 }

@@ -180,6 +180,7 @@ private:
     rt::Picture& Picture;
     std::uint64_t Content = 0;
     double MediumErrors = 1.0;
+    int CoarserInScene = 0; ///< levels below the finest that are in the scene now
   };
   std::vector<Try> GetTries(const Task& task) const;
   rt::FrameAccumulation::Result TraceScene(Task task, Offers offers);

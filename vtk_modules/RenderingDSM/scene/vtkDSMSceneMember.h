@@ -87,6 +87,8 @@ public:
   {
     return 0;
   }
+  /// Local, the same on every rank: the same where they are farthest away, for a picture that is to be there soon.
+  virtual int FindDraftLevel(const rt::FrameRequest& /*request*/, double /*pixels*/) { return 0; }
   ///@{
   /// Of levels of which a picture shows a box each (vtkDSMNestedLevels): ChooseBoxes finds the boxes for a picture,
   /// local, and returns a number that ranks share that find the same; 0: there are none. NeedsBoxes says whether
@@ -98,6 +100,7 @@ public:
     return 0;
   }
   virtual bool NeedsBoxes() const { return false; }
+  virtual bool HasBoxes() const { return false; }
   virtual void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>&) {}
   ///@}
   /// At which level AddTo shows the data: the finest (0), or so many below it, or the coarsest there is.

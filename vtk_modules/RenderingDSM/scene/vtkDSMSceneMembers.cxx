@@ -169,6 +169,23 @@ std::uint64_t vtkDSMSceneMembers::ChooseLevels(
   return hash.Get();
 }
 
+int vtkDSMSceneMembers::FindDraftLevel(const rt::FrameRequest& request, double pixels) const
+{
+  int level = 0;
+  for (const Member& member : this->Shown)
+  {
+    const Placing placing(member);
+    level = std::max(level, member.State->FindDraftLevel(request, pixels));
+  }
+  return level;
+}
+
+bool vtkDSMSceneMembers::HaveBoxes() const
+{
+  return std::any_of(this->Shown.begin(), this->Shown.end(),
+    [](const Member& member) { return member.State->HasBoxes(); });
+}
+
 bool vtkDSMSceneMembers::NeedBoxes() const
 {
   return std::any_of(this->Shown.begin(), this->Shown.end(),

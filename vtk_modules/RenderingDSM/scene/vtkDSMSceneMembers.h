@@ -48,6 +48,10 @@ public:
   /// of its levels; 0 pixels: the finest. While a view is `moving`, none becomes finer, and boxes stay. Returns a
   /// number that ranks share that choose the same.
   std::uint64_t ChooseLevels(const rt::FrameRequest& request, double pixels, bool moving);
+  /// Local: how many levels below the finest a draft is of.
+  int FindDraftLevel(const rt::FrameRequest& request, double pixels) const;
+  /// Local: whether any boxes of levels are shown.
+  bool HaveBoxes() const;
   /// Local: whether any boxes are to be shown that are not; TakeBoxes, collective, shows them.
   bool NeedBoxes() const;
   void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group);

@@ -76,7 +76,13 @@ std::vector<vtkDSMScene::Internals::Try> vtkDSMScene::Internals::GetTries(const 
     for (const rt::Resolution::Try& picture :
       rt::Resolution::GetTries(task.Shown, task.Content, task.Whole))
     {
-      tries.push_back({ 0, picture });
+      const vtkDSMMemoryOptions* const options = this->Group->GetOptions();
+      const bool isCoarser =
+        picture.Edge > 1 && options->GetLevelOfDetail() == vtkDSMMemoryOptions::AutomaticLevel;
+      tries.push_back({ isCoarser
+          ? this->Members.FindDraftLevel(task.Whole, options->GetPixelsPerSample() * picture.Edge)
+          : 0,
+        picture });
     }
   }
   else
@@ -164,14 +170,15 @@ rt::FrameAccumulation::Result vtkDSMScene::Internals::TracePicture(Task& task, O
       messenger.Insist([&] { task.Request = rt::Resolution::Reduce(task.Whole, edge); });
       task.Limit(task.Request);
     }
-    if (next->Coarser > 0 || isDraft || offers.empty())
+    if (next->Coarser > 0 || task.CoarserInScene > 0 || isDraft || offers.empty())
     {
       offers = messenger.GatherValueTogether("Preparing the frame",
         [&]
         {
-          if (next->Coarser > 0)
+          if (next->Coarser != task.CoarserInScene)
           {
             this->Members.AddTo(task.Scene, next->Coarser);
+            task.CoarserInScene = next->Coarser;
           }
           task.Scene.Transport.MediumErrors =
             isDraft ? rt::Resolution::MediumErrors : task.MediumErrors;
