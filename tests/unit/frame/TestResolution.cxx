@@ -5,7 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -140,4 +143,75 @@ TEST(SampleWidth, IsThatOfTheNearestSamplesInThePicture)
   // A camera among the samples has some at its near plane, about.
   look(0.2, 0.0);
   EXPECT_GT(getWidth(), getExact(0.1));
+}
+
+/// The bounds of what is seen are those of the samples that a picture shows, one by one.
+TEST(SeenPart, HasTheBoundsOfWhatIsSeen)
+{
+  const glm::dvec3 last(40.0, 30.0, 50.0);
+  const glm::dmat4 indexToWorld = glm::scale(
+    glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 1.0, 3.0)), glm::dvec3(0.1, 0.2, 0.1));
+  rt::FrameRequest request;
+  request.Width = 300;
+  request.Height = 200;
+  const glm::dvec3 middle(indexToWorld * glm::dvec4(0.5 * last, 1.0));
+  const auto check = [&](const glm::dmat4& worldToClip, double depth)
+  {
+    request.WorldToClip = worldToClip;
+    std::optional<rt::SeenPart::Bounds> expected;
+    for (double z = 0.0; z <= last.z; z += 0.5)
+    {
+      for (double y = 0.0; y <= last.y; y += 0.5)
+      {
+        for (double x = 0.0; x <= last.x; x += 0.5)
+        {
+          const glm::dvec3 place(x, y, z);
+          const glm::dvec4 clip = worldToClip * indexToWorld * glm::dvec4(place, 1.0);
+          if (std::max({ std::abs(clip.x), std::abs(clip.y), std::abs(clip.z) }) > clip.w ||
+            clip.w > depth)
+          {
+            continue;
+          }
+          expected = expected ? rt::SeenPart::Bounds{ glm::min(expected->Lower, place),
+            glm::max(expected->Upper, place), std::min(expected->Nearest, clip.w),
+            std::max(expected->Farthest, clip.w) }
+                              : rt::SeenPart::Bounds{ place, place, clip.w, clip.w };
+        }
+      }
+    }
+    const auto found = rt::SeenPart(request, indexToWorld, last).Find(depth);
+    ASSERT_TRUE(found || !expected);
+    if (found && !expected) // it is between the places
+    {
+      EXPECT_LT(glm::length(found->Upper - found->Lower), 1.5);
+    }
+    if (expected)
+    {
+      constexpr double most = 2.0; // corners of what is seen may be sharp
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        EXPECT_LE(found->Lower[axis], expected->Lower[axis] + 1e-6);
+        EXPECT_GE(found->Lower[axis], expected->Lower[axis] - most);
+        EXPECT_GE(found->Upper[axis], expected->Upper[axis] - 1e-6);
+        EXPECT_LE(found->Upper[axis], expected->Upper[axis] + most);
+      }
+      EXPECT_NEAR(found->Nearest, expected->Nearest, 0.3);
+      EXPECT_NEAR(found->Farthest, expected->Farthest, 0.3);
+    }
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double depth : { infinity, 6.0, 3.0, 0.1 })
+  {
+    for (const glm::dvec3& from :
+      { glm::dvec3(6.0, 5.0, 9.0), glm::dvec3(1.5, 0.7, 2.0), glm::dvec3(-4.0, 0.1, 0.2) })
+    {
+      const glm::dmat4 look = glm::lookAt(middle + from, middle, glm::dvec3(0.0, 1.0, 0.0));
+      check(glm::perspective(0.5, 1.5, 0.01, 100.0) * look, depth);
+      check(glm::ortho(-1.5, 1.5, -1.0, 1.0, 1.0, 90.0) * look, depth);
+    }
+    // It looks away.
+    check(glm::perspective(0.5, 1.5, 0.01, 100.0) *
+        glm::lookAt(middle + glm::dvec3(9.0), middle + glm::dvec3(18.0), glm::dvec3(0.0, 1.0, 0.0)),
+      depth);
+  }
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -105,6 +106,7 @@ public:
     int Step;
   };
   virtual StepOrigin GetOrigin(int step) const { return { this->Path, this->Stamp, step }; }
+  std::filesystem::file_time_type GetTimeOpened() const { return this->OpenedAt; }
   /// Number of levels of detail, of which one was opened.
   int GetLevels() const { return this->Levels; }
   /// Attributes of the file that are not honored: for each a sentence after the file's name, such as "has 'scanner'
@@ -185,6 +187,7 @@ protected:
 
 private:
   std::uint64_t Number;
+  std::filesystem::file_time_type OpenedAt = std::filesystem::file_time_type::clock::now();
 };
 
 /// Options for what the header of a file does not define, or leaves open.
@@ -203,6 +206,8 @@ struct OpenOptions
   /// Called now and then by the opening thread while a file is being opened, because an index of many chunks
   /// takes time. If it returns false, opening ends with dsm::Error. May be empty.
   std::function<bool()> GoesOn;
+  /// When another level of the same volume was opened: what a server has said since then need not be asked again.
+  std::optional<std::filesystem::file_time_type> OpenedAt;
   /// Only what headers and file systems say is wanted: compressed values of NRRD and MetaImage are not unpacked, and
   /// cannot be read.
   bool OnlyHeader = false;

@@ -21,10 +21,6 @@ namespace
 constexpr std::size_t MostKnownKeys = 1 << 16;
 constexpr std::chrono::seconds LeastBetweenChecks(1);
 
-/// A server that was asked so short a time before is not asked again: the levels of a volume are opened one after the
-/// other.
-constexpr std::chrono::seconds Recently(1);
-
 /// A request takes as long as some bytes.
 constexpr std::uint64_t LargestRemoteGap = std::uint64_t(64) << 10;
 constexpr std::uint64_t MostTogetherRemote = std::uint64_t(8) << 20;
@@ -162,11 +158,12 @@ private:
   mutable std::vector<std::string> Names; ///< of what is kept of it
 };
 
-RemoteKeys::RemoteKeys(const std::string& url, std::function<bool()> goesOn)
+RemoteKeys::RemoteKeys(const std::string& url, std::function<bool()> goesOn,
+  const std::optional<KeptAnswers::Time>& openedAt)
   : Place(url)
   , GoesOn(std::move(goesOn))
   , Kept(KeptAnswers::GetShared())
-  , OpenedAt(KeptAnswers::Time::clock::now() - Recently)
+  , OpenedAt(openedAt.value_or(KeptAnswers::Time::clock::now()))
 {
 }
 

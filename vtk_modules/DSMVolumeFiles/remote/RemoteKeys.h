@@ -26,8 +26,10 @@ namespace vol
 class RemoteKeys : public std::enable_shared_from_this<RemoteKeys>
 {
 public:
-  /// `goesOn`: see HttpClient::Get; until EndOpening.
-  RemoteKeys(const std::string& url, std::function<bool()> goesOn);
+  /// `goesOn`: see HttpClient::Get; until EndOpening. `openedAt`: when the volume was opened, of which this is another
+  /// level; none: now.
+  RemoteKeys(const std::string& url, std::function<bool()> goesOn,
+    const std::optional<KeptAnswers::Time>& openedAt);
   void EndOpening() { this->GoesOn = nullptr; }
 
   const std::string& GetRoot() const { return this->Place.GetRoot(); }

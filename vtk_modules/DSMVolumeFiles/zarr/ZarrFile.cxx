@@ -38,7 +38,7 @@ class ZarrFile final : public StoredFile
 public:
   ZarrFile(const std::string& path, const OpenOptions& options)
     : StoredFile(path)
-    , Store(ZarrStore::Make(path, options.GoesOn))
+    , Store(ZarrStore::Make(path, options))
     , Folder(path)
     , Name(options.Dataset.empty() ? options.GetArrayName(path) : options.Dataset)
     , IsPlaced(!options.HasSpacing())

@@ -23,8 +23,8 @@ namespace
 class ZarrRemote final : public ZarrStore
 {
 public:
-  ZarrRemote(const std::string& url, const std::function<bool()>& goesOn)
-    : Keys(std::make_shared<RemoteKeys>(url, goesOn))
+  ZarrRemote(const std::string& url, const OpenOptions& options)
+    : Keys(std::make_shared<RemoteKeys>(url, options.GoesOn, options.OpenedAt))
     , Root(url)
   {
     const std::size_t last = url.rfind('/');
@@ -255,10 +255,9 @@ private:
 
 } // namespace
 
-std::shared_ptr<ZarrStore> MakeZarrRemote(
-  const std::string& url, const std::function<bool()>& goesOn)
+std::shared_ptr<ZarrStore> MakeZarrRemote(const std::string& url, const OpenOptions& options)
 {
-  return std::make_shared<ZarrRemote>(url, goesOn);
+  return std::make_shared<ZarrRemote>(url, options);
 }
 
 } // namespace vol

@@ -4,7 +4,6 @@
 
 #include "DSMVolumeFiles/zarr/ZarrStore.h"
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -13,8 +12,7 @@ namespace vol
 
 /// A store that a server has. It cannot be listed, so groups need consolidated metadata. Throws dsm::Error, which names
 /// the address, unless there is an array or a group.
-std::shared_ptr<ZarrStore> MakeZarrRemote(
-  const std::string& url, const std::function<bool()>& goesOn);
+std::shared_ptr<ZarrStore> MakeZarrRemote(const std::string& url, const OpenOptions& options);
 
 } // namespace vol
 

@@ -93,12 +93,11 @@ public:
 
 } // namespace
 
-std::shared_ptr<ZarrStore> ZarrStore::Make(
-  const std::string& path, const std::function<bool()>& goesOn)
+std::shared_ptr<ZarrStore> ZarrStore::Make(const std::string& path, const OpenOptions& options)
 {
   if (IsUrl(path))
   {
-    return MakeZarrRemote(path, goesOn);
+    return MakeZarrRemote(path, options);
   }
   return FindPathKind(path) == PathKind::File ? MakeZarrZip(path) : std::make_shared<ZarrFolders>();
 }

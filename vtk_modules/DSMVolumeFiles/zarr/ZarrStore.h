@@ -4,6 +4,7 @@
 
 #include "DSMBricks/base/ByteHash.h"
 #include "DSMVolumeFiles/base/ByteSource.h"
+#include "DSMVolumeFiles/format/VolumeFile.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,9 +23,8 @@ namespace vol
 class ZarrStore
 {
 public:
-  /// `path`: a folder, a ZIP archive of one, or an address (IsUrl). `goesOn`: see OpenOptions; until EndOpening.
-  static std::shared_ptr<ZarrStore> Make(
-    const std::string& path, const std::function<bool()>& goesOn);
+  /// `path`: a folder, a ZIP archive of one, or an address (IsUrl). `options`: GoesOn counts until EndOpening.
+  static std::shared_ptr<ZarrStore> Make(const std::string& path, const OpenOptions& options);
 
   ZarrStore() = default;
   virtual ~ZarrStore() = default;

@@ -71,6 +71,7 @@ std::shared_ptr<vtkDSMFileValues> vtkDSMFileValues::OpenCoarser(int level) const
   const vol::FileArray& array = this->GetArray();
   vol::OpenOptions options = this->Options;
   options.Level += level;
+  options.OpenedAt = this->Of.File->GetTimeOpened();
   const auto file = vol::OpenCachedVolume(this->Of.File->GetPaths(), options);
   const auto& arrays = file->GetArrays();
   const auto found = std::find_if(arrays.begin(), arrays.end(),
