@@ -90,8 +90,8 @@ dsm_setting(LevelOfDetail OWNER ranks TYPE enum DEFAULT 0
   ENTRIES AutomaticLevel "Automatic" FinestLevel "Finest"
   LABEL "Level of Detail"
   TEXT "Level of a volume file with several levels (dsm_convert --levels, Save Data, OME-Zarr). Automatic: the coarsest
-    whose samples are not farther apart than Pixels per Sample, where they are nearest to the camera. The picture needs
-    fewer bricks. Finest: all that the file has.")
+    whose samples are not farther apart than Pixels per Sample. In large volumes, near parts are finer than far
+    ones. The picture needs fewer bricks. Finest: all that the file has.")
 dsm_setting(PixelsPerSample OWNER ranks TYPE double DEFAULT 1 RANGE 0.125 64
   LABEL "Pixels per Sample"
   TEXT "Largest distance of samples in the picture, in pixels, at which Level of Detail chooses a coarser level. 1 shows
