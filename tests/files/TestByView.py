@@ -64,6 +64,14 @@ with Messages() as messages:
     display.DSMLevelOfDetail = "Automatic"
     look(150)
     check_equal(render(view), pictures[1], "the way there does not matter", 0)
+    source.OwnOrigin = 1
+    check_equal(render(view), pictures[1], "nor does a new dataset with the same values", 0)
+    display.DSMDebugView, display.DSMShowLegend = "Level", 0
+    colors = render(view).reshape(-1, 3)
+    colors = colors[colors.max(axis=1) > 80]
+    reds = (colors[:, 0] > 2 * colors[:, 1:].max(axis=1)).mean()
+    check(0.1 < reds < 0.98, f"the finest level has {100 * reds:.0f} % of the picture, others the rest")
+    display.DSMDebugView = "Off"
     simple.Hide(source, view)
     display = simple.GetDisplayProperties(source, view)
     display.Representation = "DSM Volume"

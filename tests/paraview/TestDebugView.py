@@ -30,7 +30,7 @@ display.DSMShowLegend = 0
 covered = get_covered(plain)
 check(covered.mean() > 0.05, "there is a surface")
 for mode in ("Owner of the data", "Rank that traced", "Brick", "Normal", "Depth",
-             "Tiles that changed hands"):
+             "Tiles that changed hands", "Level"):
     pixels = draw(mode)
     check((get_covered(pixels) == covered).mean() > 0.995, mode + " covers the same pixels")
 owners = count_hues(draw("Owner of the data"))

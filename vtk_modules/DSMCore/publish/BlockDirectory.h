@@ -44,6 +44,9 @@ public:
   /// Its blocks are read through a cache that all such sources share: BlockStore::Settings::SourceCacheBytes.
   void SetReadThroughCache() { this->ReadThroughCache = true; }
   bool IsReadThroughCache() const { return this->ReadThroughCache; }
+  /// Level of detail of the blocks' data, which a debug view shows; 0 is the finest.
+  void SetLevel(int level) { this->Level = level; }
+  int GetLevel() const { return this->Level; }
   /// Returns the bytes of the directory and of the publishers' indices, on every rank.
   std::uint64_t GetOwnBytes() const
   {
@@ -57,6 +60,7 @@ private:
   std::uint32_t Largest; ///< largest block, in bytes: needed for every brick that is prefetched
   BlockAssigner Assigner;
   std::uint64_t IndexBytes = 0;
+  int Level = 0;
   bool FromSource = false;
   bool ReadThroughCache = false;
   bool OnOwnersDisk = false;

@@ -53,9 +53,13 @@ glm::ivec2 GetPlace(int ray)
   return { edge * (block % columns) + pixel % edge, edge * (block / columns) + pixel / edge };
 }
 
-/// Returns the number that a debug view of owners or bricks shows.
+/// Returns the number that a debug view of bricks shows.
 std::uint64_t GetNumber(DebugView view, const ObjectTracer::Brick& brick)
 {
+  if (view == DebugView::Level)
+  {
+    return brick.Segment ? static_cast<std::uint64_t>(brick.Segment->GetDirectory().GetLevel()) : 0;
+  }
   return brick.Segment && view == DebugView::Owner
     ? static_cast<std::uint64_t>(brick.Segment->GetDirectory().GetOwner(brick.Id))
     : brick.Id;
@@ -224,7 +228,7 @@ RayMask PixelSampler::DescribeSurfaces(
       {
         path.Object = hits[index].GetObject()->GetNumber();
       }
-      if (this->World.View == DebugView::Owner || this->World.View == DebugView::Brick)
+      if (IsOfBricks(this->World.View))
       {
         path.Number = GetNumber(this->World.View, hits[index].GetObject()->FindBrick(hits[index]));
       }
@@ -504,10 +508,9 @@ glm::vec3 PixelSampler::ShowForDebugging(const glm::dvec3& place) const
   {
     return glm::vec3(1.0f - this->Rays.GetDepth(place));
   }
-  const bool isOfBricks = view == DebugView::Owner || view == DebugView::Brick;
   // Tinted when the tile is done; a medium has no normals.
-  return isOfBricks ? GetNumberColor(GetNumber(view, this->Media.FindBrick(place)))
-                    : glm::vec3(1.0f);
+  return IsOfBricks(view) ? GetNumberColor(GetNumber(view, this->Media.FindBrick(place)))
+                          : glm::vec3(1.0f);
 }
 
 glm::vec3 PixelSampler::ShowForDebugging(const LightPath& path) const
@@ -524,6 +527,7 @@ glm::vec3 PixelSampler::ShowForDebugging(const LightPath& path) const
       return glm::vec3(1.0f - this->Rays.GetDepth(point.Position));
     case DebugView::Owner:
     case DebugView::Brick:
+    case DebugView::Level:
       return facing * GetNumberColor(path.Number);
     default:
       return glm::vec3(facing); // tinted when the tile is done

@@ -24,8 +24,15 @@ enum class DebugView
   Normal,      ///< x, y, z of the world as red, green, blue
   Depth,       ///< near is bright, far is dark
   NewTiles,    ///< red: another rank traced the tile in the last frame (the paper's Fig. 9)
-  Misses       ///< how many bricks the tile waited for: black, red, yellow, white at ManyMisses
+  Misses,      ///< how many bricks the tile waited for: black, red, yellow, white at ManyMisses
+  Level        ///< level of detail of a volume file
 };
+
+/// Returns whether a view shows a number of each brick.
+inline bool IsOfBricks(DebugView view)
+{
+  return view == DebugView::Owner || view == DebugView::Brick || view == DebugView::Level;
+}
 
 /// A tile that takes as long, or longer, is white.
 constexpr double LongTileSeconds = 0.002;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DSMVolumeFiles/remote/HttpClient.h"
 
+#include "DSMVolumeFiles/base/BytesFromServers.h"
 #include "DSMVolumeFiles/base/FileError.h"
 #include "DSMVolumeFiles/base/SmallFile.h"
 #include "DSMVolumeFiles/base/Url.h"
@@ -566,6 +567,7 @@ Transfer::Result Follow(const RemotePlace& place, const HttpClient::Request& req
       answer.Validator = transfer.Head.Validator;
       answer.Total = transfer.Head.GetTotal(transfer.Body.size());
       answer.Body = std::move(transfer.Body);
+      BytesFromServers += answer.Body.size();
       return result;
     }
     const std::string refused = redirects >= MostRedirects

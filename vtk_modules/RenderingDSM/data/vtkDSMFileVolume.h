@@ -97,6 +97,8 @@ public:
     return 2 * lattice.GetBrickCount() * sizeof(dsm::ByteDigest);
   }
 
+  /// Returns the level of detail in the file; 0 is the finest.
+  int GetLevel() const { return this->Values->GetOptions().Level; }
   /// Returns whether values of cells become those of points.
   bool IsOfCells() const { return this->OnCells; }
   /// Samples along each axis of one of the file's chunks.

@@ -105,15 +105,9 @@ private:
   void Note(dsm::BlockId id, const std::byte* block) const
   {
     const Index3 brick = this->Lattice.GetBrick(id);
-    const Index3 last = this->Lattice.GetBricks() - Index3(1);
-    const Index3 cells = this->Levels->GetCells(this->Level);
-    for (int axis = 0; axis < 3; ++axis)
+    if (this->Levels->ContinuesCoarser(this->Box, this->Level, brick))
     {
-      if ((brick[axis] == 0 && this->Box.Min[axis] > 0) ||
-        (brick[axis] == last[axis] && this->Box.Max[axis] < cells[axis]))
-      {
-        return; // a face continues the coarser level
-      }
+      return;
     }
     bricks::VoxelBrickHeader header;
     std::memcpy(&header, block, sizeof(header));
@@ -195,9 +189,10 @@ int vtkDSMNestedLevels::FindFarLevel(
     : 0;
 }
 
-vtkDSMNestedLevels::Boxes vtkDSMNestedLevels::FindBoxes(
-  const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const
+vtkDSMNestedLevels::Boxes vtkDSMNestedLevels::FindBoxes(const rt::FrameRequest& request,
+  const glm::dmat4& indexToWorld, double pixels, bool& isCoarse) const
 {
+  isCoarse = false;
   const int coarsest = this->GetCount() - 1;
   const rt::SeenPart seen = this->FindSeen(request, indexToWorld);
   const auto all = seen.Find(std::numeric_limits<double>::infinity());
@@ -230,7 +225,8 @@ vtkDSMNestedLevels::Boxes vtkDSMNestedLevels::FindBoxes(
     const Box box = bricks::Intersect({ glm::max(first * Index3(Edge), coarser.Min) * ratio,
                                         glm::min(end * Index3(Edge), coarser.Max) * ratio },
       { Index3(0), this->GetCells(level) });
-    if (box.IsEmpty() || CountBricks(box) > MostBricks)
+    isCoarse = CountBricks(box) > MostBricks;
+    if (box.IsEmpty() || isCoarse)
     {
       break;
     }
@@ -322,6 +318,21 @@ std::uint64_t vtkDSMNestedLevels::GetNumber(const Box& box, int level, const Ind
   return static_cast<std::uint64_t>(at.x + all.x * (at.y + all.y * at.z));
 }
 
+bool vtkDSMNestedLevels::ContinuesCoarser(const Box& box, int level, const Index3& brick) const
+{
+  const Index3 last = DivideUp(box.GetSize(), Index3(Edge)) - Index3(1);
+  const Index3 cells = this->GetCells(level);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if ((brick[axis] == 0 && box.Min[axis] > 0) ||
+      (brick[axis] == last[axis] && box.Max[axis] < cells[axis]))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<bricks::ValueRange> vtkDSMNestedLevels::FindRanges(
   const Boxes& boxes, int level, const bricks::BrickLattice& lattice) const
 {
@@ -334,7 +345,8 @@ std::vector<bricks::ValueRange> vtkDSMNestedLevels::FindRanges(
     {
       bricks::ValueRange& range = ranges[lattice.GetId(brick)];
       const auto found = known.find(this->GetNumber(box, level, brick));
-      range = found != known.end() ? found->second : range;
+      const bool isKnown = found != known.end() && !this->ContinuesCoarser(box, level, brick);
+      range = isKnown ? found->second : range;
       range = hole.Has(brick * Index3(Edge)) ? bricks::ValueRange::GetEmpty() : range;
     });
   return ranges;

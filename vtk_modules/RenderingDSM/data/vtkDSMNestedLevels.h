@@ -40,9 +40,10 @@ public:
     Volumes volumes, const bricks::BrickLattice& lattice);
 
   /// Local. The boxes of a picture. `indexToWorld`: of the finest level's samples. `pixels`: 0: the finest level
-  /// everywhere. Empty: one level does as well, of which all is published.
-  Boxes FindBoxes(
-    const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels) const;
+  /// everywhere. Empty: one level does as well, of which all is published. `isCoarse`: whether a
+  /// level's box has too many bricks, so that the picture is coarser than it should be.
+  Boxes FindBoxes(const rt::FrameRequest& request, const glm::dmat4& indexToWorld, double pixels,
+    bool& isCoarse) const;
 
   /// Local. The coarsest level, of the file's, whose samples are so many pixels wide, or less, where they are farthest
   /// away.
@@ -68,6 +69,8 @@ public:
   {
     return *this->Volume[static_cast<std::size_t>(level)];
   }
+  /// Returns the number of a level in the file.
+  int GetFileLevel(int level) const { return this->GetVolume(level).GetLevel(); }
   int GetCount() const { return static_cast<int>(this->Volume.size()); }
 
 private:
@@ -91,6 +94,8 @@ private:
   {
     return this->GetScale(level + 1) / this->GetScale(level);
   }
+  /// Returns whether a brick of a box has a face whose values are the coarser level's.
+  bool ContinuesCoarser(const bricks::Box& box, int level, const bricks::Index3& brick) const;
   /// A number of a brick, of all bricks of the level.
   std::uint64_t GetNumber(const bricks::Box& box, int level, const bricks::Index3& brick) const;
 

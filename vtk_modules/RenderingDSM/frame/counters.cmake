@@ -46,6 +46,8 @@ dsm_counter(BytesReceived UNIT Bytes VALUE "counters.BytesReceived"
   TEXT "Bytes of bricks received from other ranks.")
 dsm_counter(BytesSent UNIT Bytes VALUE "counters.BytesSent"
   TEXT "Bytes of bricks sent to other ranks.")
+dsm_counter(BytesFromServers UNIT Bytes VALUE "vol::BytesFromServers.load()"
+  TEXT "Bytes of volumes that servers sent to the rank, since it began.")
 dsm_counter(WaitSeconds UNIT Seconds VALUE "ToSeconds(counters.Workers.WaitNanoseconds)"
   WORKER "ToSeconds(worker.WaitNanoseconds)"
   TEXT "Time that tiles waited for bricks.")

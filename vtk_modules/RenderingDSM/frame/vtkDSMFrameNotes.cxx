@@ -22,6 +22,7 @@ namespace
 constexpr int FontSize = 13; ///< points
 /// More would cover the picture.
 constexpr std::size_t MostEntries = 16;
+constexpr std::uint64_t MostLevels = 8;
 
 const glm::vec3 PanelColor(0.12f);
 
@@ -200,6 +201,13 @@ std::vector<vtkDSMFrameNotes::Entry> vtkDSMFrameNotes::CreateLegend(
     case rt::DebugView::Brick:
       legend = { { rt::GetNumberColor(0), "brick 0" }, { rt::GetNumberColor(1), "brick 1" },
         { rt::GetNumberColor(2), "brick 2, etc." } };
+      break;
+    case rt::DebugView::Level:
+      for (std::uint64_t level = 0; level < MostLevels; ++level)
+      {
+        legend.push_back({ rt::GetNumberColor(level),
+          "level " + std::to_string(level) + (level == 0 ? ", the finest" : "") });
+      }
       break;
     case rt::DebugView::TileTime:
       for (const double part : { 0.0, 0.25, 0.5, 0.75, 1.0 })

@@ -4,6 +4,7 @@
 #include "DSMCore/store/BlockStore.h"
 #include "DSMCore/transport/Message.h"
 #include "DSMRayTracing/frame/Frame.h"
+#include "DSMVolumeFiles/base/BytesFromServers.h"
 #include "vtkDSMCounters.h"
 
 #include "vtkDoubleArray.h"

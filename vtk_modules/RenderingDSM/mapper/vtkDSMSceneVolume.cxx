@@ -468,15 +468,18 @@ std::uint64_t vtkDSMSceneVolume::ChooseBoxes(
   if (!nested)
   {
     this->WantedBoxes.clear();
+    this->IsCoarse = false;
   }
   else if (!moving || this->ShownBoxes.empty())
   {
     const vtkDSMPartValues& values = *this->GetIso()->GetParts().front();
     // The finest level is there as a whole, if it is small enough.
     const bool isWhole = pixels <= 0.0 && values.GetLevel() == 0;
+    this->IsCoarse = false;
     this->WantedBoxes = isWhole
       ? vtkDSMNestedLevels::Boxes()
-      : nested->FindBoxes(request, this->FindDataToWorld() * values.GetSlicesToData(), pixels);
+      : nested->FindBoxes(
+          request, this->FindDataToWorld() * values.GetSlicesToData(), pixels, this->IsCoarse);
   }
   bricks::ByteHash hash;
   for (const bricks::Box& box : this->WantedBoxes)
@@ -603,6 +606,13 @@ void vtkDSMSceneVolume::AddTo(rt::Scene& scene)
   if (!this->Data || !this->GetIso())
   {
     return;
+  }
+  if (this->IsCoarse)
+  {
+    this->Warnings.push_back("The picture shows coarser levels of the array '" +
+      this->GetIso()->Choice.Name +
+      "' than it could, because finer ones have too many bricks in it. Show a smaller part, or "
+      "raise Pixels per Sample (DSMPixelsPerSample) with the Level of Detail Automatic.");
   }
   const vtkDSMVolumeLook look = this->GetLook();
   if (look.IsMedium())

@@ -38,8 +38,12 @@ public:
   int CountCoarser() const override;
   int FindLevel(const rt::FrameRequest& request, double pixels, bool moving) override;
   std::uint64_t ChooseBoxes(const rt::FrameRequest& request, double pixels, bool moving) override;
-  bool NeedsBoxes() const override { return !(this->WantedBoxes == this->ShownBoxes); }
-  bool HasBoxes() const override { return !this->ShownBoxes.empty(); }
+  bool NeedsBoxes() const override
+  {
+    return !(this->WantedBoxes == this->ShownBoxes) ||
+      (!this->WantedBoxes.empty() && !this->AreBoxed());
+  }
+  bool HasBoxes() const override { return !this->ShownBoxes.empty() && this->AreBoxed(); }
   int FindDraftLevel(const rt::FrameRequest& request, double pixels) override;
   void TakeBoxes(const std::shared_ptr<vtkDSMRankGroup>& group) override;
   /// One object, or medium, for each of the volume's parts, and of the components that are shown at once.
@@ -114,7 +118,16 @@ private:
   /// by their own array.
   const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
   /// Returns whether each of the levels' boxes is shown as a part.
-  bool ShowsBoxes() const { return !this->ShownBoxes.empty() && this->GetCoarser() == 0; }
+  bool ShowsBoxes() const
+  {
+    return !this->ShownBoxes.empty() && this->GetCoarser() == 0 && this->AreBoxed();
+  }
+  /// Returns whether all arrays have boxes. New data and arrays have none yet.
+  bool AreBoxed() const
+  {
+    return std::none_of(this->Arrays.begin(), this->Arrays.end(),
+      [](const auto& published) { return published->Boxed.empty(); });
+  }
   /// Returns the levels of which all arrays have boxes; null: none.
   const vtkDSMNestedLevels* FindNested() const;
   /// Returns the values of the parts at the level of detail that is shown.
@@ -210,7 +223,8 @@ private:
   vtkDSMNestedLevels::Boxes WantedBoxes;
   vtkDSMNestedLevels::Boxes ShownBoxes;
   ///@}
-  int ChosenLevel = 0; ///< the last one of FindLevel
+  bool IsCoarse = false; ///< finer boxes would have too many bricks
+  int ChosenLevel = 0;   ///< the last one of FindLevel
   /// Publications of the previous values, during Update.
   std::vector<std::shared_ptr<Published>> Stale;
   std::optional<double> Suggested;                         ///< isovalue

@@ -54,12 +54,13 @@ dsm_setting(Denoise OWNER scene TYPE enum DEFAULT 1
     lie among other datasets, are not filtered.")
 dsm_setting(DebugView OWNER scene TYPE enum DEFAULT 0
   ENTRIES Off "Off" Owner "Owner of the data" TracingRank "Rank that traced" Brick "Brick" TileTime "Tile time"
-    Normal "Normal" Depth "Depth" NewTiles "Tiles that changed hands" Misses "Misses"
+    Normal "Normal" Depth "Depth" NewTiles "Tiles that changed hands" Misses "Misses" Level "Level"
   LABEL "Debug View" PANEL advanced
-  TEXT "Color surfaces by a diagnostic quantity instead of their material. Ranks and bricks each have a color. Rank 0
-    is red. Tile time goes from black over red and yellow to white (2 ms or more). Normals show x, y, z as red, green,
-    blue. Depth is bright where surfaces are near. Tiles that another rank traced in the last picture are red. Misses
-    go from black to white (16 or more bricks that the tile waited for).")
+  TEXT "Color surfaces by a diagnostic quantity instead of their material. Ranks, bricks and levels of detail of volume
+    files each have a color. Rank 0 and the finest level are red. Tile time goes from black over red and yellow to white
+    (2 ms or more). Normals show x, y, z as red, green, blue. Depth is bright where surfaces are near. Tiles that
+    another rank traced in the last picture are red. Misses go from black to white (16 or more bricks that the tile
+    waited for).")
 dsm_setting(ShowLegend OWNER scene TYPE bool DEFAULT 1
   LABEL "Debug Legend" PANEL advanced
   TEXT "Show a legend for the colors of the debug view.")

@@ -190,6 +190,7 @@ std::shared_ptr<bricks::VoxelField> vtkDSMLatticePart::PublishBox(const Values& 
       const bricks::BrickLattice lattice = nested.GetLattice(boxes, level);
       field = this->MakeValues(lattice, glm::dmat4(1.0))->Field;
       directory = nested.CreateDirectory(boxes, level, lattice, messenger.GetSize());
+      directory->SetLevel(nested.GetFileLevel(level));
       directory->SetReadThroughCache();
       directory->AddIndexBytes(
         volume.GetTableBytes() + dsm::ReadingSource::MostReads * directory->GetLargest());
@@ -295,6 +296,7 @@ void vtkDSMLatticePart::PublishFile(const vtkDSMFileVolume& file, bool isCoarser
     [&]
     {
       directory = file.CreateDirectory(field.Lattice, messenger.GetSize());
+      directory->SetLevel(file.GetLevel());
       staysInMemory = old && old->Source && old->Field->Lattice == field.Lattice &&
         old->Field->Segment->GetDirectory().GetFingerprint() == directory->GetFingerprint();
       values.Source = staysInMemory ? std::move(old->Source)

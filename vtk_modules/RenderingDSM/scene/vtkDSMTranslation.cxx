@@ -418,7 +418,8 @@ rt::DebugView vtkDSMTranslation::ToDebugView(vtkDSMLightOptions* options)
       static_cast<int>(rt::DebugView::Normal) == Options::Normal &&
       static_cast<int>(rt::DebugView::Depth) == Options::Depth &&
       static_cast<int>(rt::DebugView::NewTiles) == Options::NewTiles &&
-      static_cast<int>(rt::DebugView::Misses) == Options::Misses,
+      static_cast<int>(rt::DebugView::Misses) == Options::Misses &&
+      static_cast<int>(rt::DebugView::Level) == Options::Level,
     "the options number the views as the tracer does");
   return static_cast<rt::DebugView>(options->GetDebugView());
 }
