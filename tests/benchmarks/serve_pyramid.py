@@ -123,7 +123,7 @@ class Pyramid:
         self.metadata = {key: json.dumps(text, indent=2).encode() for key, text in texts.items()}
 
     def find_chunk(self, key):
-        """The number of the level, and the places of the chunk along x, y and z. None if there is no such chunk."""
+        """Returns the level's number and the chunk's places along x, y and z, or None if there is no such chunk."""
         words = key.split("/")
         if len(words) != 4 or not all(word.isascii() and word.isdigit() for word in words):
             return None

@@ -3,7 +3,7 @@
 
 #include "DSMBricks/layout/DealBricks.h"
 #include "DSMBricks/layout/VoxelBrickHeader.h"
-#include "DSMRayTracing/frame/SampleWidth.h"
+#include "DSMBricks/levels/LevelLattice.h"
 #include "vtkDSMGather.h"
 
 #include <glm/common.hpp>
@@ -20,6 +20,7 @@ namespace
 {
 
 using bricks::Box;
+using bricks::DivideUp;
 using bricks::Index3;
 
 /// A level of so few bricks is shown whole, wherever the camera is; one of so many where the levels that a picture
@@ -29,11 +30,6 @@ constexpr std::int64_t SomeBricks = std::int64_t(1) << 18;
 
 /// How far a level's samples may be from where whole numbers of the finest ones are.
 constexpr double MostStretch = 0.1;
-
-Index3 DivideUp(const Index3& number, const Index3& by)
-{
-  return (number + by - Index3(1)) / by;
-}
 
 std::int64_t CountBricks(const Box& cells)
 {

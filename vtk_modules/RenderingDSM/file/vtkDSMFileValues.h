@@ -44,8 +44,8 @@ public:
   /// Advises the system that the samples of boxes will probably be needed soon. Does not fail.
   void Prefetch(std::vector<bricks::Box> boxes) const;
 
-  /// The array at a coarser level of the file, with all samples of that level; the first one is 1. Null where there
-  /// is no such level, or it has no such array. Throws dsm::Error.
+  /// Opens a coarser level of the file, of which the first is 1, and returns all samples of the same array in it.
+  /// Returns null where the file has no such level, or the level no such array. Throws dsm::Error.
   std::shared_ptr<vtkDSMFileValues> OpenCoarser(int level) const;
   /// Returns the number of levels below the one that was opened.
   int CountCoarser() const { return this->Of.File->GetLevels() - 1 - this->Options.Level; }

@@ -118,10 +118,7 @@ private:
   /// by their own array.
   const Published& GetColoring() const { return *this->Arrays[this->Arrays.size() > 1 ? 1 : 0]; }
   /// Returns whether each of the levels' boxes is shown as a part.
-  bool ShowsBoxes() const
-  {
-    return !this->ShownBoxes.empty() && this->GetCoarser() == 0 && this->AreBoxed();
-  }
+  bool ShowsBoxes() const { return this->HasBoxes() && this->GetCoarser() == 0; }
   /// Returns whether all arrays have boxes. New data and arrays have none yet.
   bool AreBoxed() const
   {
@@ -219,7 +216,7 @@ private:
   /// Publications of the arrays of GetShown, in their order. Several may be the same one.
   std::vector<std::shared_ptr<Published>> Arrays;
   ///@{
-  /// Of the levels of the dataset's file; empty: all of one level is shown.
+  /// A picture's boxes of the levels of the dataset's file; empty: one level is shown whole.
   vtkDSMNestedLevels::Boxes WantedBoxes;
   vtkDSMNestedLevels::Boxes ShownBoxes;
   ///@}

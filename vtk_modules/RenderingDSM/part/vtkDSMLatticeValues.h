@@ -52,8 +52,8 @@ public:
   int Level = 0;
   std::shared_ptr<vtkDSMNestedLevels> Nested;
   ///@{
-  /// Of a level's box: the boxes of that level and of all coarser ones, on which its bricks depend, and the field that
-  /// gives the bricks back (Field shares them).
+  /// Values of a level's box have the boxes of that level and of all coarser ones, on which its bricks depend, and the
+  /// field that gives the bricks back (Field shares them).
   int BoxLevel = 0;
   vtkDSMNestedLevels::Boxes Boxes;
   std::shared_ptr<bricks::VoxelField> Bricked;
